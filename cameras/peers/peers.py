@@ -1,7 +1,7 @@
 """Reads and writes event files with other people's programs.
 
-    peers.py read  es|raw FILE   prints a line for each event: time, address, polarity
-    peers.py write es|raw FILE   writes the events of such lines on standard input
+    peers.py read  es|evt2|evt3 FILE   prints a line for each event: time, address, polarity
+    peers.py write es|evt2|evt3 FILE   writes the events of such lines on standard input
 """
 
 import sys
@@ -28,25 +28,28 @@ def write_es(path, events):
         encoder.write(chunk)
 
 
-def read_evt2(path):
-    for time, x, y, polarity in Wizard(encoding="evt2").read(path):
+def read_evt(path, encoding):
+    for time, x, y, polarity in Wizard(encoding=encoding).read(path):
         yield time, int(y) << 11 | int(x), polarity
 
 
-def write_evt2(path, events):
+def write_evt(path, events, encoding):
     fields = [("t", "<i8"), ("x", "<i2"), ("y", "<i2"), ("p", "u1")]
     rows = [(t, address & 0x7FF, address >> 11, polarity) for t, address, polarity in events]
-    Wizard(encoding="evt2").save(path, numpy.array(rows, dtype=fields))
+    Wizard(encoding=encoding).save(path, numpy.array(rows, dtype=fields))
 
 
 def main():
     action, kind, path = sys.argv[1:]
     if action == "read":
-        for event in (read_es if kind == "es" else read_evt2)(path):
+        for event in read_es(path) if kind == "es" else read_evt(path, kind):
             print(*event)
     else:
         events = [tuple(map(int, line.split())) for line in sys.stdin]
-        (write_es if kind == "es" else write_evt2)(path, events)
+        if kind == "es":
+            write_es(path, events)
+        else:
+            write_evt(path, events, kind)
 
 
 if __name__ == "__main__":

@@ -41,6 +41,15 @@ pub enum ChipError<B, P = Infallible> {
     /// [`open_loop`](super::Running::open_loop). [`ReckOn::started`](super::ReckOn::started) returns this error if the
     /// chip is within a sample.
     Busy,
+    /// The chip was started with other registers than those of the network that was loaded, or that network is recurrent.
+    /// Time steps in which neurons compare once need the registers of a network whose loop is open.
+    OtherNetwork,
+    /// An output of `ReckOn` has reached the end of its range, so that its value is wrong. The time step is complete, and
+    /// chip and driver are in sync.
+    Clipped {
+        /// Number of the output.
+        output: u8,
+    },
     /// The weights from one input or neuron have both signs, which this chip cannot store.
     MixedSigns {
         /// Number of the row of synapses that would store the weights. A row belongs to a presynaptic neuron or to an
@@ -85,6 +94,8 @@ impl<B: fmt::Debug, P: fmt::Debug> fmt::Display for ChipError<B, P> {
             Self::NotStarted => write!(f, "the chip did not answer after its gate was opened"),
             Self::NoProbe => write!(f, "no neuron can show that the chip starts"),
             Self::Busy => write!(f, "the chip's outputs do not end"),
+            Self::OtherNetwork => write!(f, "the chip's registers are not those of the network"),
+            Self::Clipped { output } => write!(f, "output {output} reached the end of its range"),
             Self::MixedSigns { pre } => write!(f, "weights from {pre} have both signs"),
             Self::OutOfRange { what, value, min, max } => {
                 write!(f, "{what} {value} must lie in {min}..={max}")

@@ -189,10 +189,20 @@ impl Chunked for Bag {
     }
 
     fn record(&mut self) -> Result<Option<u64>> {
-        let at = self.walk.bytes.at();
+        let mut at = self.walk.bytes.at();
         self.data.clear();
-        let read = part(&mut self.walk.bytes, &mut self.header)
-            .and_then(|()| part(&mut self.walk.bytes, &mut self.data));
+        let mut read = part(&mut self.walk.bytes, &mut self.header);
+        // No header is empty: a recorder that makes its file longer in advance leaves zeros.
+        if read.is_ok() && self.header.is_empty() {
+            let zeros = self.walk.bytes.pass_zeros();
+            let count = self.walk.bytes.at() - at;
+            self.walk.faults.lose(at, format!("{count} zeros where a record should begin"));
+            at = self.walk.bytes.at();
+            read = zeros
+                .map_err(|error| error.to_string())
+                .and_then(|()| part(&mut self.walk.bytes, &mut self.header));
+        }
+        let read = read.and_then(|()| part(&mut self.walk.bytes, &mut self.data));
         let Err(what) = read else { return Ok(Some(at)) };
         if self.walk.bytes.at() == at {
             return Ok(None);

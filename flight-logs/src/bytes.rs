@@ -50,6 +50,23 @@ impl Bytes {
         Ok(taken as u64 == count)
     }
 
+    /// Skips bytes of 0, up to the next other byte.
+    ///
+    /// # Errors
+    /// Returns an error if the bytes cannot be read or decompressed.
+    pub(crate) fn pass_zeros(&mut self) -> io::Result<()> {
+        let mut next = [0];
+        while self.input.read(&mut next)? > 0 {
+            if next != [0] {
+                let rest = std::mem::replace(&mut self.input, Box::new(io::empty()));
+                self.input = Box::new(Cursor::new(next).chain(rest));
+                break;
+            }
+            self.at += 1;
+        }
+        Ok(())
+    }
+
     /// Skips `count` bytes; returns false if fewer bytes are left in the file.
     ///
     /// # Errors

@@ -35,6 +35,8 @@ pub enum ErrorKind {
     Empty,
     /// The file is not a log, although its name or its first bytes suggest one. The text tells what is missing.
     NotALog(String),
+    /// The file is a log that must not be read by this version of the crate. The text tells why.
+    Unsupported(String),
     /// A record or a message cannot be read.
     Fault {
         /// Offset of the fault in the file, in bytes.
@@ -132,7 +134,7 @@ impl fmt::Display for Error {
             ErrorKind::Unpack(_) => write!(f, "{file}: cannot be unpacked"),
             ErrorKind::ShortHead(_) => write!(f, "{file}: shorter than its head"),
             ErrorKind::Empty => write!(f, "{file}: empty"),
-            ErrorKind::NotALog(what) => write!(f, "{file}: {what}"),
+            ErrorKind::NotALog(what) | ErrorKind::Unsupported(what) => write!(f, "{file}: {what}"),
             ErrorKind::Fault { at, what, .. } => write!(f, "{file}: byte {at}: {what}"),
             ErrorKind::Damaged { at, length, .. } => {
                 write!(f, "{file}: damaged at byte {at} of {length}")

@@ -68,6 +68,14 @@ impl Faults {
         }
     }
 
+    /// Notes `count` bytes at the end of a log that are blank: erased flash, or zeros of a file that was made longer than
+    /// its log in advance. They are no damage.
+    pub(crate) fn blank(&mut self, at: u64, count: u64) {
+        self.note(format!(
+            "the last {count} bytes, from byte {at} on, are blank, as erased flash is"
+        ));
+    }
+
     /// Notes damage after which nothing can be read. `at` is the offset of the damage in the file, in bytes; `what`
     /// describes the damage.
     ///

@@ -96,6 +96,13 @@ pub trait Log {
     /// Returns the bytes of the message that [`next`](Self::next) read last.
     fn message(&self) -> &[u8];
 
+    /// Returns the unit of a field's numbers, such as `deg/s`, if the log gives it. `g/2048` is the unit of a sensor's
+    /// counts, of which 2048 are 1 g. `topic` is an index into [`topics`](Self::topics).
+    fn unit(&self, topic: usize, field: &str) -> Option<String> {
+        let _ = (topic, field);
+        None
+    }
+
     /// Returns the faults found so far. Callers may report them, or add further faults. The faults are complete at the
     /// end of the log.
     fn faults(&mut self) -> &mut Faults;
@@ -158,7 +165,7 @@ impl Kind {
             return Ok(None);
         }
         let mut start = Vec::new();
-        let read = Bytes::open(path)?.take(dataflash::LOOKED_AT, &mut start);
+        let read = Bytes::open(path)?.take(LOOKED_AT, &mut start);
         let is_named = path.extension().is_some_and(|extension| extension == "ulg");
         match (read, of_start(&start)) {
             (Err(error), _) if is_named => Err(Error::of(path, ErrorKind::Unpack(error))),
@@ -195,6 +202,10 @@ impl Kind {
     }
 }
 
+/// A log must begin within this number of bytes from the start of its file: some loggers write other text first, and
+/// some programs that fetch logs from a controller add or lose bytes.
+const LOOKED_AT: u64 = 8192;
+
 /// Error text for a directory that is not a ROS 2 bag.
 const NO_BAG: &str = "a directory, and no bag of ROS 2, which has a file metadata.yaml";
 
@@ -207,18 +218,18 @@ fn of_start(start: &[u8]) -> Option<Kind> {
         (blackbox::START, Kind::Blackbox),
         (ulog::START, Kind::Ulog),
     ];
-    let kind = kinds.into_iter().find(|(first, _)| start.starts_with(first)).map(|(_, kind)| kind);
-    let looked_into = || {
-        let is_begun = |window: &[u8]| window == dataflash::START;
-        if start.windows(dataflash::START.len()).any(is_begun) {
-            Some(Kind::ArduPilot)
-        } else if dataflash::is_text(start) {
-            Some(Kind::ArduPilotText)
-        } else {
-            mavlink::is_log(start).then_some(Kind::Mavlink)
-        }
-    };
-    kind.or_else(looked_into)
+    if let Some((_, kind)) = kinds.into_iter().find(|(first, _)| start.starts_with(first)) {
+        return Some(kind);
+    }
+    if dataflash::is_binary(start) {
+        Some(Kind::ArduPilot)
+    } else if dataflash::is_text(start) {
+        Some(Kind::ArduPilotText)
+    } else if mavlink::is_log(start) {
+        Some(Kind::Mavlink)
+    } else {
+        blackbox::start(start).map(|_| Kind::Blackbox)
+    }
 }
 
 /// Compiles the examples in the README as doctests.

@@ -4,7 +4,7 @@
 
 pub use flight_data::Record;
 
-/// The six channels of two flights: of a PX4 hexarotor in flight, about 197 Hz, with two gaps, and of a VTOL aircraft at
+/// The six channels of two flights: of a PX4 hexarotor in flight, 198.5 Hz, with gaps, and of a VTOL aircraft at
 /// rest, 200 Hz.
 pub fn flights() -> [[Vec<f32>; 6]; 2] {
     [flight_data::HEXAROTOR, flight_data::VTOL_AT_REST].map(|recording| {

@@ -1,6 +1,7 @@
 //! A link that is down for a second or for years, senders that rest and that start again, clocks with jitter, receivers
 //! that join late: what a receiver calls exact is what a decoder beside the encoder holds, bit for bit. An attack adds
-//! sessions near each other and used again, samples half a period late, clocks that step and drift, and NaN in one channel.
+//! sessions near each other and used again, samples half a period late, clocks that step, drift and change within their
+//! tolerance, NaN in one channel, and a second bank that shares the link.
 //!
 //! The truth is kept by time in 64 bits and by decoders that get every code. It knows nothing of frames.
 
@@ -12,17 +13,48 @@ use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use spikewire::link::{
-    CLOCK_TOLERANCE, Coding, FrameView, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter,
+    CLOCK_TOLERANCE, Coding, FrameView, MAX_FRAME, Part, Reader, Received, Receiver, Session,
+    Transmitter, join,
 };
-use spikewire::{
-    Bank, ConfigError, Fingerprint, FromItems, Item, Put, Recovery, Sample, Scheme, Tick,
-};
+use spikewire::temporal::StepForward;
+use spikewire::{Bank, ConfigError, FromItems, Item, Put, Recovery, Sample, Scheme, Tick};
 
 /// The most events of a sample, over both channels.
 const EVENTS: usize = 256;
 /// How many samples back a value may be.
 const REMEMBERED: usize = 12_000;
 const YEAR: u64 = 365 * 24 * 3_600 * 1_000_000;
+
+static SECOND: StepForward<i16> = StepForward::new(7);
+
+/// A bank of one channel that shares the link, and what its receiver should hold.
+struct Second {
+    bank: Bank<&'static StepForward<i16>, 1>,
+    receiver: Receiver<&'static StepForward<i16>, 1, 0>,
+    level: i16,
+    value: Option<i16>,
+}
+
+impl Second {
+    fn new() -> Self {
+        let (bank, receiver) = (Bank::new(&SECOND), Receiver::new(&SECOND));
+        Self { bank, receiver, level: 0, value: None }
+    }
+
+    /// A sample that goes up and down.
+    fn sample(&mut self, time: u64, items: &mut Items) {
+        self.level = (self.level + 9) % 200;
+        self.bank.encode_into(Tick::from_micros(time), [self.level - 100], items);
+        // The decoder of a step code holds the baseline of its encoder.
+        self.value = self.bank.keyframe(0);
+    }
+
+    fn check(&self, claims: &mut Claims) {
+        if let (Some(claimed), Some(value)) = (self.receiver.exact(0), self.value) {
+            claims.add(claimed, value);
+        }
+    }
+}
 
 /// What was claimed, and how much of it was wrong.
 #[derive(Clone, Copy, Debug, Default)]
@@ -63,15 +95,20 @@ struct World<'a, P: Scheme> {
     near: u32,
     /// In millionths, to which the remainder of a tick adds up.
     drift: i64,
+    /// Whether the clock changes within its tolerance: at any time and to any rate, or steadily if it has sub-timesteps.
+    changes: bool,
     remainder: i64,
+    /// A bank that shares the link, and the receiver that is joined with the other.
+    second: Option<Second>,
     // The sender.
     /// The numbers of the first frame of the session, and of the last one sent.
     first: u64,
     last: u64,
     /// What reads every frame that is sent.
     watch: Reader<MAX_FRAME>,
-    /// Whether the reader has heard that first frame.
+    /// Whether the reader has heard that first frame, and the number of the last one of the session that it heard.
     is_first_heard: bool,
+    delivered: Option<u64>,
     now: u64,
     /// When the last sample was taken.
     taken: u64,
@@ -113,7 +150,9 @@ impl<'a, P: Storable> World<'a, P> {
         // Ticks are whole, which takes a part of what jitter a sub-timestep allows.
         let drifts = is_attack && tolerance > 0 && (!has_slots || slot_ticks >= 16);
         let drift = if drifts { i64::from(random.next_u32() % 39_000) - 19_500 } else { 0 };
+        let changes = drifts && random.next_u32().is_multiple_of(2);
         let jitter = if drift == 0 { jitter } else { 0 };
+        let is_joined = is_attack && random.next_u32().is_multiple_of(2);
         // Slots lie on a grid, which 2³² µs shift by more than this: a sample so long ago is not taken for the present one.
         let near = match slot_ticks {
             0 if is_attack => 5 * period / 8,
@@ -135,16 +174,19 @@ impl<'a, P: Storable> World<'a, P> {
             is_attack,
             near,
             drift,
+            changes,
             remainder: 0,
+            second: is_joined.then(Second::new),
             first: 0,
             last: 0,
             watch: Reader::new(),
             is_first_heard: false,
+            delivered: None,
             now: 0,
             taken: 0,
             at: random.next_u32() as usize % samples.len(),
             bank: bank(scheme, &start, slot_ticks),
-            transmitter: transmitter(period, Session::counted(session), Fingerprint::from_bits(0)),
+            transmitter: Transmitter::new(Coding::for_channels(1, 1), Session::counted(session)),
             items: Items::default(),
             beside: Beside::new(scheme, &start),
             truth: VecDeque::new(),
@@ -161,7 +203,21 @@ impl<'a, P: Storable> World<'a, P> {
             random,
         };
         world.restart(false);
+        world.join_late();
         world
+    }
+
+    /// A receiver that knows nothing, in the middle of a flight.
+    fn join_late(&mut self) {
+        self.reader = Reader::new();
+        (self.is_first_heard, self.delivered) = (false, None);
+        self.receiver = Receiver::new(self.scheme)
+            .with_slot_ticks(self.slot_ticks)
+            .with_clock_tolerance(self.tolerance);
+        if let Some(second) = &mut self.second {
+            second.receiver = Receiver::new(&SECOND);
+            join(&mut [&mut self.receiver, &mut second.receiver]).unwrap();
+        }
     }
 
     fn draw(&mut self, below: u64) -> u64 {
@@ -185,13 +241,16 @@ impl<'a, P: Storable> World<'a, P> {
         near - near % u64::from(self.period)
     }
 
-    /// A session near the one before, or that one again if the first frames of both are heard. One whose first frame is
-    /// lost lies ahead of all that was sent: among numbers that were sent, nothing tells it from the one before.
+    /// A session near the one before, or that one again if its first frame is heard now, and was before or is longer ago than
+    /// frames are late. One whose first frame is lost lies ahead of all that was sent: among numbers that were sent, nothing
+    /// tells it from the one before.
     fn near_session(&mut self, is_heard: bool) -> Session {
         let ahead = 1_u64 << self.draw(33);
         let ahead = self.draw(ahead);
+        let heard =
+            self.delivered.map_or(0, |last| last.wrapping_sub(self.first) & ((1 << 48) - 1));
         let first = match self.draw(3) {
-            0 if is_heard && self.is_first_heard => self.first,
+            0 if is_heard && (self.is_first_heard || heard >= 16) => self.first,
             1 if is_heard && self.is_first_heard => self.first.wrapping_sub(ahead),
             _ => self.last.wrapping_add(1 + ahead),
         };
@@ -218,7 +277,7 @@ impl<'a, P: Storable> World<'a, P> {
         } + u64::from(self.period);
         self.items.0.clear();
         self.bank = bank(self.scheme, &self.start, self.slot_ticks);
-        self.transmitter = transmitter(self.period, session, self.bank.fingerprint());
+        self.transmitter = self.start_transmitter(session);
         self.beside = Beside::new(self.scheme, &self.start);
         self.truth.clear();
         let mut frame = [0; 64];
@@ -226,16 +285,42 @@ impl<'a, P: Storable> World<'a, P> {
         let beat = Item::Heartbeat { tick: Tick::from(0), address: 0 };
         let bytes = first.next_frame(FromItems([beat].into_iter()), &mut frame).unwrap();
         self.first = FrameView::new(bytes.unwrap()).unwrap().0.number();
-        (self.last, self.is_first_heard) = (self.first, false);
+        (self.last, self.is_first_heard, self.delivered) = (self.first, false, None);
         self.watch = Reader::new();
         self.unsent = None;
         self.claimed = [0; CHANNELS];
+    }
+
+    fn start_transmitter(&mut self, session: Session) -> Transmitter {
+        let period = self.period;
+        let Some(second) = &mut self.second else {
+            return Transmitter::for_bank(&self.bank, period, session).with_step_bits(4);
+        };
+        (second.bank, second.value) = (Bank::new(&SECOND), None);
+        let banks: &mut [&mut dyn Part] = &mut [&mut self.bank, &mut second.bank];
+        Transmitter::for_banks(banks, period, session).unwrap().with_step_bits(4)
+    }
+
+    /// The clock of samples changes within its tolerance.
+    fn change_clock(&mut self) {
+        if self.slot_ticks > 0 {
+            // A 128th of the tolerance, and not soon again.
+            if self.number.is_multiple_of(320) {
+                let change = self.draw(313).cast_signed() - 156;
+                self.drift = (self.drift + change).clamp(-19_500, 19_500);
+            }
+        } else if self.draw(40) == 0 {
+            self.drift = self.draw(39_001).cast_signed() - 19_500;
+        }
     }
 
     /// Takes a sample, in the sender's interrupt.
     fn sample(&mut self, samples: [P::Sample; CHANNELS]) {
         if self.is_attack {
             self.step();
+        }
+        if self.is_attack && self.changes {
+            self.change_clock();
         }
         self.remainder += i64::from(self.period) * self.drift;
         let whole = self.remainder / 1_000_000;
@@ -244,6 +329,9 @@ impl<'a, P: Storable> World<'a, P> {
         let early = u64::from(self.jitter);
         self.taken = self.now + self.draw(2 * early + 1) - early + self.lateness();
         self.bank.encode_into(Tick::from_micros(self.taken), samples, &mut self.items);
+        if let Some(second) = &mut self.second {
+            second.sample(self.taken, &mut self.items);
+        }
         let mut values =
             self.truth.back().map_or([P::Sample::default(); CHANNELS], |last| last.values);
         self.beside.sample(samples, &mut values);
@@ -292,6 +380,9 @@ impl<'a, P: Storable> World<'a, P> {
     /// A keyframe of each channel that has one, or a heartbeat, after the last sample.
     fn beat(&mut self) {
         self.bank.keyframe_into(Tick::from_micros(self.taken), &mut self.items);
+        if let Some(second) = &mut self.second {
+            second.bank.keyframe_into(Tick::from_micros(self.taken), &mut self.items);
+        }
         if let Some(last) = self.truth.back_mut() {
             self.beside.keyframe(&mut last.values);
         }
@@ -321,6 +412,10 @@ impl<'a, P: Storable> World<'a, P> {
             }
             self.reader = reader;
         }
+        if let Some(second) = self.second.as_mut().filter(|_| is_last_here) {
+            second.check(&mut self.claims);
+            assert_eq!((self.receiver.outside(), second.receiver.outside()), (0, 0));
+        }
         if is_last_here && matches!(P::RECOVERY, Recovery::Keyframe) {
             let Some(truth) = self.truth.back() else { return };
             for channel in 0..CHANNELS {
@@ -343,6 +438,10 @@ impl<'a, P: Storable> World<'a, P> {
             exact(&self.receiver)
         };
         self.is_first_heard |= received.is_start && received.frame.is_first();
+        self.delivered = Some(received.frame.number());
+        if let Some(second) = &mut self.second {
+            second.receiver.apply(received, |_, _, _| ());
+        }
         let misfits = self.receiver.misfits();
         let values = &mut self.values;
         values.clear();
@@ -373,11 +472,15 @@ impl<'a, P: Storable> World<'a, P> {
             if let Some(last) = heard.last() {
                 assert_eq!(last.2.to_bits32(), value.to_bits32());
             }
+            let begin = heard.first().map(|first| first.1);
             for &&(_, tick, claimed) in &heard[first..] {
+                // Samples of a silence are told where the pace has them that was measured before.
+                let silence = begin.map_or(0, |begin| tick.since(begin).unsigned_abs());
+                let near = self.near + if self.changes { silence / 25 } else { 0 };
                 let from = self.truth.partition_point(|truth| truth.number < self.claimed[channel]);
                 // Ticks come again after 2³² µs: of samples with such a tick one has the value.
                 let is_near = |truth: &&Truth<P::Sample>| {
-                    tick.since(Tick::from_micros(truth.time)).unsigned_abs() <= self.near
+                    tick.since(Tick::from_micros(truth.time)).unsigned_abs() <= near
                 };
                 let is_told = |truth: &&Truth<P::Sample>| {
                     truth.values[channel].to_bits32() == claimed.to_bits32()
@@ -465,9 +568,13 @@ impl<'a, P: Storable> World<'a, P> {
     fn whole(&mut self) {
         // After a longer outage a receiver waits for a full frame.
         let full = (1 << 19) / self.period + self.beat;
-        let samples = full + 6 * self.beat + self.beside.recovery() + 5;
+        let mut samples = full + 6 * self.beat + self.beside.recovery() + 5;
         let from = self.truth.len();
         let is_attack = std::mem::take(&mut self.is_attack);
+        if self.changes {
+            // The pace that was measured may be that of another clock.
+            samples += 300;
+        }
         for sample in 1..=samples {
             let next = self.next_samples();
             self.sample(next);
@@ -482,6 +589,10 @@ impl<'a, P: Storable> World<'a, P> {
             let is_there = self.receiver.exact(channel as u16).is_some();
             self.claims.due += u64::from(is_due);
             self.claims.withheld += u64::from(is_due && !is_there);
+        }
+        if let Some(second) = self.second.as_ref().filter(|_| from > 0) {
+            self.claims.due += 1;
+            self.claims.withheld += u64::from(second.receiver.exact(0).is_none());
         }
     }
 
@@ -498,13 +609,7 @@ impl<'a, P: Storable> World<'a, P> {
                     self.beat();
                     self.send(0.0);
                 }
-                1 => {
-                    self.reader = Reader::new();
-                    self.is_first_heard = false;
-                    self.receiver = Receiver::new(self.scheme)
-                        .with_slot_ticks(self.slot_ticks)
-                        .with_clock_tolerance(self.tolerance);
-                }
+                1 => self.join_late(),
                 2 | 3 => self.rest(loss),
                 _ => self.outage(),
             }
@@ -523,11 +628,6 @@ impl Claims {
             self.wrong += 1;
         }
     }
-}
-
-fn transmitter(period: u32, session: Session, fingerprint: Fingerprint) -> Transmitter {
-    let coding = Coding::for_channels(CHANNELS as u16, period);
-    Transmitter::new(coding, session).with_fingerprint(fingerprint).with_step_bits(4)
 }
 
 fn bank<'a, P>(scheme: &'a P, start: &[u8], slot_ticks: u32) -> Bank<&'a P, CHANNELS>

@@ -1,8 +1,7 @@
 """The banks that `spikewire advise` takes from two logs, for the table to fly: the text of `advised.json`.
 
 `advised.py SPIKEWIRE` asks that program about the hexarotor's flight in `data`, and about the lesson flown by the simulated
-drone, whose rotors shake it: another drone's log, and its own. Channels that `advise` leaves out, as vibration is all that
-they have, are coded as in the bank that was found by flying.
+drone, whose rotors shake it: another drone's log, and its own.
 """
 
 from __future__ import annotations
@@ -15,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from banks import LEVEL, Bank, banks, written
-from codes import GROUPS, lesson
+from banks import LEVEL, Bank, written
+from codes import lesson
 from flight import RATE
 
 KEPT_ADVISED = Path(__file__).with_name("advised.json")
@@ -38,9 +37,7 @@ def advised(spikewire: str, log: Path) -> Bank:
         raise ValueError(f"only a low-pass is flown, not {filter_}")
     shared = own.get("parameters", {})
     taken = {channel["name"]: shared | channel.get("parameters", {}) for channel in own["channel"]}
-    found = zip(GROUPS, banks()[own["scheme"]].groups)
-    left = {CHANNELS[channel]: group | shared for (channels, _), group in found for channel in channels}
-    groups = tuple((left | taken)[name] for name in CHANNELS)
+    groups = tuple(taken[name] for name in CHANNELS)
     return Bank(own["scheme"], filter_ and filter_["corner"], round(own["keyframe_every"] * own["period"] / 1000), groups)
 
 

@@ -8,7 +8,7 @@ HERE = Path(__file__).parent
 
 if __name__ == "__main__":
     os.chdir(HERE)
-    page = (HERE.parent / "docs/fly.md").read_text()
+    page = (HERE.parents[1] / "docs/fly.md").read_text()
     names: dict = {}
     blocks = re.findall(r"^\*\*(\d+)\..*?(?:```python\n(.*?)```|\Z)", page, re.M | re.S)
     if [int(number) for number, _ in blocks] != list(range(1, 11)):

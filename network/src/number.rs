@@ -82,8 +82,8 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
 }
 
 /// Whether the core is a Cortex-M0, with few registers and no long products; it is recognised by its lack of a
-/// compare-and-swap. It does not affect results.
-pub(crate) const IS_SMALL: bool = !cfg!(target_has_atomic = "ptr");
+/// compare-and-swap. It does not affect results; `without_vectors` runs its code on a host, for tests.
+pub(crate) const IS_SMALL: bool = !cfg!(target_has_atomic = "ptr") || cfg!(without_vectors);
 
 /// Largest result of [`Number::outside`] for a number in its range.
 pub(crate) const OUTSIDE: u32 = (1 << 30) - 1;

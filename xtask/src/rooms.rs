@@ -2,11 +2,11 @@
 //! this program need no order, but no two may name each other, directly or through others; nor may two files of a
 //! module.
 
-use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
+use crate::verify::modules::{Named, files, paths};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
-    path::{Path, PathBuf},
+    path::Path,
 };
 use syn::{Item, UseTree};
 
@@ -21,84 +21,6 @@ const ORDER: [&[&str]; 8] = [
     &["out"],
     &["lib"],
 ];
-
-/// A path from the crate's root, and its line.
-type Named = (Vec<String>, usize);
-
-/// Returns all paths in a text that begin at the root: `crate::a::b`, each branch of `crate::{a, b::c}`, and `super::a`
-/// in a nested module. `module` is the text's own path from the root.
-fn paths(source: &str, module: &[String]) -> Vec<Named> {
-    let mut found = Vec::new();
-    walk(source.parse().unwrap(), module, &mut found);
-    found
-}
-
-fn walk(tokens: TokenStream, module: &[String], found: &mut Vec<Named>) {
-    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-    let mut at = 0;
-    while let Some(token) = tokens.get(at) {
-        match token {
-            TokenTree::Ident(word) if is_path(&tokens, at + 1) && word == "crate" => {
-                at = branch(&tokens, at + 3, Vec::new(), found);
-                continue;
-            }
-            TokenTree::Ident(word) if is_path(&tokens, at + 1) && word == "super" => {
-                at = branch(&tokens, at, module.to_vec(), found);
-                continue;
-            }
-            TokenTree::Group(group) => {
-                let inline = at.checked_sub(2).filter(|&at| is_word(&tokens, at, "mod"));
-                let inline = inline.map(|at| tokens[at + 1].to_string());
-                let module: Vec<String> = module.iter().cloned().chain(inline).collect();
-                walk(group.stream(), &module, found);
-            }
-            _ => {}
-        }
-        at += 1;
-    }
-}
-
-/// Parses a path or a tree of paths after its prefix; returns where it ends.
-fn branch(
-    tokens: &[TokenTree],
-    at: usize,
-    mut before: Vec<String>,
-    found: &mut Vec<Named>,
-) -> usize {
-    match tokens.get(at) {
-        Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace => {
-            let branches: Vec<TokenTree> = group.stream().into_iter().collect();
-            let comma = |token: &TokenTree| matches!(token, TokenTree::Punct(sign) if sign.as_char() == ',');
-            for one in branches.split(comma).filter(|one| !one.is_empty()) {
-                branch(one, 0, before.clone(), found);
-            }
-            return at + 1;
-        }
-        Some(TokenTree::Ident(word)) if word == "super" => {
-            assert!(before.pop().is_some(), "super above the root");
-        }
-        Some(word) => before.push(word.to_string()),
-        None => {}
-    }
-    if is_path(tokens, at + 1) {
-        return branch(tokens, at + 3, before, found);
-    }
-    let line = tokens.get(at).map_or(0, |token| token.span().start().line);
-    found.push((before, line));
-    at + 1
-}
-
-fn is_path(tokens: &[TokenTree], at: usize) -> bool {
-    let is_colon =
-        |at: usize| matches!(tokens.get(at), Some(TokenTree::Punct(sign)) if sign.as_char() == ':');
-    let is_joint =
-        matches!(tokens.get(at), Some(TokenTree::Punct(sign)) if sign.spacing() == Spacing::Joint);
-    is_joint && is_colon(at) && is_colon(at + 1)
-}
-
-fn is_word(tokens: &[TokenTree], at: usize, wanted: &str) -> bool {
-    matches!(tokens.get(at), Some(TokenTree::Ident(word)) if word == wanted)
-}
 
 /// Returns the modules that a root declares, and the module of each name that it re-exports.
 fn roots(lib: &str) -> BTreeMap<String, String> {
@@ -143,21 +65,6 @@ fn offences(source: &str, module: &[String], roots: &BTreeMap<String, String>) -
         Some(other) => Some(format!("line {line}: crate::{}, of {other}", path[0])),
     };
     paths(source, module).into_iter().filter_map(offence).collect()
-}
-
-/// Returns all Rust files below a directory, each with its module's path.
-fn files(top: &Path) -> Vec<(PathBuf, Vec<String>)> {
-    let (mut found, mut waiting) = (Vec::new(), vec![top.to_path_buf()]);
-    while let Some(path) = waiting.pop() {
-        if path.is_dir() {
-            waiting.extend(fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().path()));
-        } else if path.extension().is_some_and(|end| end == "rs") {
-            let file = path.strip_prefix(top).unwrap().with_extension("");
-            let parts = file.iter().map(|part| part.to_str().unwrap().to_owned());
-            found.push((path, parts.filter(|part| part != "mod").collect()));
-        }
-    }
-    found
 }
 
 #[test]

@@ -7,7 +7,7 @@ and a layer of leaky neurons with a readout learns from the spikes alone whether
 spikes are compared, by their hash, with those that the firmware prints of the same flight.
 """
 
-# %% The flight: three gyroscopes in rad/s and three accelerometers in m/s², about 197 samples a second
+# %% The flight: three gyroscopes in rad/s and three accelerometers in m/s², 198.5 samples a second
 import os
 from pathlib import Path
 

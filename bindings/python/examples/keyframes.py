@@ -2,7 +2,7 @@
 
     python bindings/python/examples/keyframes.py
 
-Six inertial channels, about 197 samples a second, through send-on-delta; each sample's spikes are a frame. Prints how much of
+Six inertial channels, 198.5 samples a second, through send-on-delta; each sample's spikes are a frame. Prints how much of
 the time all six values were exact, and the longest time that they were not, the mean of ten runs of 18 s.
 """
 

@@ -54,6 +54,13 @@ def dataset(
     For many short logs, set before a Dask cluster starts
     ``dask.config.set({"distributed.worker.multiprocessing-method": "forkserver",
     "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 1 << 27})``: otherwise each worker imports Dask anew.
+
+    >>> import pathlib, tempfile, spikewire as sw
+    >>> place = pathlib.Path(tempfile.mkdtemp())
+    >>> for name in ["one", "two"]:
+    ...     _ = (place / f"{name}.csv").write_text("time,gyro_x\\n0.000,0\\n0.005,1\\n0.010,2\\n")
+    >>> sw.dataset(place, sw.StepForward(threshold=0.5), place / "spikes", channels=["gyro_x"])["events"]
+    4
     """
     flight = flight if isinstance(flight, Scheme) else Path(flight)
     if isinstance(flight, Path):

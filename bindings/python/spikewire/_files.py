@@ -10,16 +10,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
+from ._arrays import Number
 from ._bank import EVENTS
+from ._errors import Error, Unknown, checked
+from ._times import ticks
 
 
 class Log(NamedTuple):
-    """Channels of a recording."""
+    """Channels of a recording.
+
+    >>> import numpy as np, spikewire as sw
+    >>> log = sw.Log(np.array([[0.0, 0.5], [9.8, 9.7]]), np.array([0, 5000]), ["gyro_x", "accel_z"], [])
+    >>> log, log["accel_z"].tolist(), log.rate
+    (Log of gyro_x, accel_z: (2, 2), [9.8, 9.7], 200.0)
+    """
 
     #: The samples, ``float64`` (channels, samples), perhaps not finite.
-    x: np.ndarray
+    x: NDArray[Any]
     #: Their times in µs, ``int64``; none where a table has no time.
-    t: Optional[np.ndarray]
+    t: Optional[NDArray[Any]]
     #: What the channels are called.
     names: list[str]
     #: How it was read, in sentences.
@@ -36,9 +45,14 @@ class Log(NamedTuple):
         return f"Log of {', '.join(self.names)}: {self.x.shape}"
 
     def __getitem__(self, place: Any) -> Any:
-        return self.x[self.names.index(place)] if isinstance(place, str) else tuple.__getitem__(self, place)
+        if not isinstance(place, str):
+            return tuple.__getitem__(self, place)
+        if place not in self.names:
+            raise Unknown(f"there is no channel {place!r}; there are {', '.join(self.names)}")
+        return self.x[self.names.index(place)]
 
 
+@checked
 def read(
     path: str | Path,
     *channels: str | int,
@@ -47,8 +61,8 @@ def read(
     time: str | None = None,
     time_unit: str | None = None,
     delimiter: str | None = None,
-    rate: float | None = None,
-    gap: float | None = None,
+    rate: Number | None = None,
+    gap: Number | None = None,
     skip_non_finite: bool = False,
     accept_cut: bool = False,
 ) -> Log:
@@ -58,6 +72,12 @@ def read(
     ``"us"`` or ``"ns"``, both found unless given; without times, `rate` says how many samples a second there are. Steps
     in time above `gap` usual ones are noted. `skip_non_finite` goes on over values that are missing, and `accept_cut`
     over what is damaged.
+
+    >>> import pathlib, tempfile, spikewire as sw
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "flight.csv"
+    >>> _ = path.write_text("time,gyro_x,accel_z\\n0.000,0.0,9.8\\n0.005,0.5,9.7\\n")
+    >>> sw.read(path), sw.read(path, "gyro_x").x.tolist()
+    (Log of gyro_x, accel_z: (2, 2), [[0.0, 0.5]])
     """
     keywords = {
         "columns": [str(name) for name in channels],
@@ -79,27 +99,51 @@ def read_ulog(path: str | Path, topic: str, *fields: str, accept_cut: bool = Fal
     """Fields of a topic of a PX4 flight log: :class:`Log`.
 
     ``read_ulog("flight.ulg", "sensor_combined", "gyro_rad[0]")``; ``topic`` with ``:1`` is its second instance.
+
+    >>> import spikewire as sw
+    >>> sw.read_ulog("nowhere.ulg", "sensor_combined", "gyro_rad[0]")
+    Traceback (most recent call last):
+        ...
+    spikewire.Error: nowhere.ulg: cannot be opened: No such file or directory (os error 2)
     """
     return read(path, topic=topic, field=fields, accept_cut=accept_cut)
 
 
-def read_events(source: str | Path | bytes, format: str) -> NDArray[Any]:
+#: An event of a camera: its time, column, row and polarity.
+_PIXELS = np.dtype([("t", np.int64), ("x", np.int64), ("y", np.int64), ("p", np.int64)])
+
+
+@checked
+def read_events(source: str | Path | bytes | bytearray | memoryview, format: str) -> NDArray[Any]:
     """The events of a file, or of ``bytes``, as a structured array; see :data:`~spikewire.EVENTS`.
 
-    `format` is one of the laptop program's: ``"es"``, ``"evt2"``, ``"link"``, ``"edvs:e0"`` to ``"edvs:e4"``,
-    ``"eieio"`` or ``"csv"``. Times of 32 bits that wrapped, after 71.6 minutes, go on.
+    `format` is one of the laptop program's: ``"es"``, ``"evt2"``, ``"evt21"``, ``"evt3"``, ``"link"``, ``"edvs:e0"`` to
+    ``"edvs:e4"``, ``"eieio"`` or ``"csv"``. Events of a camera have their row in the field ``y``, after the column ``x``.
+    Times of 32 bits that wrapped, after 71.6 minutes, go on.
+
+    >>> import spikewire as sw
+    >>> sw.read_events(b"tick,address,polarity\\n1000,3,1\\n", "csv").tolist()
+    [(1000, 3, 1)]
     """
     data = bytes(source) if isinstance(source, (bytes, bytearray, memoryview)) else Path(source).read_bytes()
-    ticks, addresses, are_up, _ = _native.read_events(data, format)
-    events = np.empty(len(ticks), dtype=EVENTS)
+    ticks, places, rows, are_up, _ = _native.read_events(data, format)
+    events = np.empty(len(ticks), dtype=EVENTS if rows is None else _PIXELS)
+    if rows is not None:
+        events["y"] = rows
     steps = np.diff(ticks, prepend=ticks[:1]).view(np.int32).astype(np.int64)
     events["t"] = np.cumsum(steps) + (int(ticks[0]) if len(ticks) else 0)
-    events["x"], events["p"] = addresses, are_up
+    events["x"], events["p"] = places, are_up
     return events
 
 
+@checked
 def write_events(events: NDArray[Any], format: str, path: str | Path | None = None) -> bytes:
     """Events, a structured array with ``t``, ``x`` and ``p``, as ``bytes`` of a format, and in a file if `path` is given.
+
+    With ``y``, as ``tonic`` and ``expelliarmus`` have it, they are a camera's events, for ``"es"``, ``"evt2"``, ``"evt3"``
+    and ``"csv"``; ``"evt3,width=640,height=480"`` is the size of its picture, if the events do not reach the last pixel.
+    ``t`` is in whole µs, in seconds as floats, or ``datetime64`` or ``timedelta64``. Gaps of more than 35 minutes, which no
+    format holds, are an error.
 
     >>> import numpy as np, spikewire as sw
     >>> events = np.array([(0, 3, 1), (1000, 0, 0)], dtype=sw.EVENTS)
@@ -109,9 +153,13 @@ def write_events(events: NDArray[Any], format: str, path: str | Path | None = No
     """
     addresses = np.asarray(events["x"])
     if len(addresses) and not (0 <= addresses.min() and addresses.max() < 1 << 16):
-        raise ValueError(f"addresses must be 0 to 65535, but are {addresses.min()} to {addresses.max()}")
-    ticks = (np.asarray(events["t"]).astype(np.int64) & 0xFFFF_FFFF).astype(np.uint32)
-    data, _ = _native.write_events(ticks, addresses.astype(np.uint16), np.asarray(events["p"]) > 0, format)
+        raise Error(f"addresses must be 0 to 65535, but are {addresses.min()} to {addresses.max()}")
+    rows = np.asarray(events["y"]) if "y" in (events.dtype.names or ()) else None
+    if rows is not None:
+        if len(rows) and not (0 <= rows.min() and rows.max() < 1 << 16):
+            raise Error(f"rows must be 0 to 65535, but are {rows.min()} to {rows.max()}")
+        rows = rows.astype(np.uint16)
+    data, _ = _native.write_events(ticks(events["t"]), addresses.astype(np.uint16), rows, np.asarray(events["p"]) > 0, format)
     if path is not None:
         Path(path).write_bytes(data)
     return data

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _native
+from ._errors import checked
 from ._filters import Filter
 from ._link import Receiver, Sender
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from ._scheme import Scheme
+from ._scheme import Scheme
 
 
 class Flight:
@@ -22,7 +20,7 @@ class Flight:
 
     Both ends are made from it, so that they cannot disagree on a threshold, and their frames carry :attr:`fingerprint`, as
     those of a firmware from the same file do. Samples and values are in counts: :attr:`counts` times the unit. A bad file
-    is a :class:`ValueError` with its line.
+    is a :class:`spikewire.Error` with its line.
 
     >>> import pathlib, tempfile, numpy as np, spikewire as sw
     >>> text = 'version = 1\\nscheme = "sf"\\nperiod = 2000\\nparameters = { threshold = 0.1 }\\n'
@@ -39,6 +37,7 @@ class Flight:
     (True, True)
     """
 
+    @checked
     def __init__(self, path: str | os.PathLike[str]):
         from ._schemes import schemes
 

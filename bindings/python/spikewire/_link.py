@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._arrays import tell_cut
-
-if TYPE_CHECKING:
-    from ._filters import Filter
-    from ._scheme import Scheme
+from ._arrays import Number, Whole, read, remark, remark_outside
+from ._errors import Error, checked
+from ._filters import Filter
+from ._scheme import Scheme
 
 
 class Sender:
@@ -23,7 +22,7 @@ class Sender:
     every `period` µs. After the first and every `keyframe_every` samples comes a keyframe, or a heartbeat of codes without.
     `filter` is one before the code of all channels, or one for each, or None. `label` is a text that both ends must share,
     such as names and units of the channels. The bytes are those of a firmware with the same schemes, filters, `period`,
-    `label` and `session`.
+    `label` and `session`. It pickles before its first sample.
 
     >>> import spikewire as sw
     >>> scheme = sw.StepForward(threshold=0.1)
@@ -36,27 +35,47 @@ class Sender:
     ([0.1, 0.0, 0.0, 0.0, 0.0, 9.8], True)
     """
 
+    @checked
     def __init__(
         self,
         schemes: Scheme | Sequence[Scheme],
-        period: int,
-        keyframe_every: int = 25,
-        session: int = 0,
+        period: Whole,
+        keyframe_every: Whole = 25,
+        session: Whole = 0,
         filter: Filter | Sequence[Filter | None] | None = None,
         label: str | None = None,
     ):
-        filters = _filters(filter)
-        self._native = _native.Sender(_six(schemes), filters, period, keyframe_every, session, label)
+        self._made_of = schemes, period, keyframe_every, session, filter, label
+        coders, filters = _six(schemes), _filters(filter)
+        self._native = _native.Sender(coders, filters, period, keyframe_every, session, label)
         self._sample = schemes[0].sample if isinstance(schemes, Sequence) else schemes.sample
+        # Behind a filter, a sample may be in the range again.
+        ranges = [] if any(filters) else [coder.ranges() for coder in coders]
+        self._ranges = [own[0] for own in ranges] if all(ranges) else []
+        self._has_begun = False
         #: The address of each event of the last sample, and whether it went up.
         self.fired: list[tuple[int, bool]] = []
 
+    @checked
     def encode(self, sample: ArrayLike) -> list[bytes]:
-        """The frames that a sample of the six channels makes: none, if nothing fired and no keyframe is due."""
-        sample = np.asarray(sample, dtype=float)
-        frames, self.fired = self._native.encode([float(value) for value in sample])
-        tell_cut(self._sample, sample)
+        """The frames that a sample of the six channels makes: none, if nothing fired and no keyframe is due.
+
+        >>> import spikewire as sw
+        >>> sender = sw.Sender(sw.StepForward(threshold=0.1), period=2000)
+        >>> keyframe = sender.encode([0, 0, 0, 0, 0, 9.8])
+        >>> [len(sender.encode([rate, 0, 0, 0, 0, 9.8])) for rate in (0.05, 0.25)], sender.fired
+        ([0, 1], [(0, True)])
+        """
+        sample = read(sample).array.astype(float)
+        frames, self.fired = self._native.encode(sample.tolist())
+        self._has_begun = True
+        # A channel has one sample, and no steps.
+        remark(self._sample, sample[:, None])
+        remark_outside(self._ranges, self._sample, sample[:, None])
         return frames
+
+    def __reduce__(self) -> Any:
+        return _again(self)
 
 
 class Receiver:
@@ -66,26 +85,63 @@ class Receiver:
     exact.
     `clock_tolerance` is by how much the time from sample to sample may differ from `period`, as a fraction. A bank whose
     samples are taken by a timer of the clock that its ticks come from has 0. Codes with sub-timesteps need to know it, or
-    heartbeats less than half a period over the tolerance apart.
+    heartbeats less than half a period over the tolerance apart. It pickles before its first bytes.
+
+    >>> import spikewire as sw
+    >>> sender = sw.Sender(sw.StepForward(threshold=0.1), period=2000)
+    >>> receiver = sw.Receiver(sw.StepForward(threshold=0.1), period=2000)
+    >>> for frame in sender.encode([0, 0, 0, 0, 0, 9.8]):
+    ...     receiver.hear(frame)
+    >>> bool(receiver.exact.all()), receiver.withheld[0], receiver.lost
+    (True, None, 0)
     """
 
+    @checked
     def __init__(
         self,
         schemes: Scheme | Sequence[Scheme],
-        period: int,
-        clock_tolerance: float = 0.02,
+        period: Whole,
+        clock_tolerance: Number = 0.02,
         filter: Filter | Sequence[Filter | None] | None = None,
         label: str | None = None,
     ):
+        self._made_of = schemes, period, clock_tolerance, filter, label
+        self._has_begun = False
         self._native = _native.Hearer(_six(schemes), _filters(filter), period, clock_tolerance, label)
 
-    def hear(self, data: bytes) -> None:
-        """Takes the next bytes of the link, cut anywhere: frames that were lost are noticed."""
-        self._native.hear(data)
+    @checked
+    def hear(self, data: bytes | bytearray | memoryview) -> None:
+        """Takes the next bytes of the link, cut anywhere: frames that were lost are noticed.
 
-    def advance(self, now: int) -> None:
-        """Says that all events before this time, in µs, have arrived: the samples that are over by then are decoded."""
+        >>> import spikewire as sw
+        >>> sender = sw.Sender(sw.StepForward(threshold=0.1), period=2000)
+        >>> receiver = sw.Receiver(sw.StepForward(threshold=0.1), period=2000)
+        >>> data = b"".join(sender.encode([0, 0, 0, 0, 0, 9.8]))
+        >>> receiver.hear(data[:5]), receiver.hear(bytearray(data[5:])), round(float(receiver.values[5]), 1)
+        (None, None, 9.8)
+        """
+        self._has_begun = True
+        self._native.hear(data if isinstance(data, bytes) else bytes(memoryview(data)))
+
+    @checked
+    def advance(self, now: Whole) -> None:
+        """Says that all events before this time, in µs, have arrived: the samples that are over by then are decoded.
+
+        >>> import spikewire as sw
+        >>> sender = sw.Sender(sw.StepForward(threshold=0.1), period=2000)
+        >>> receiver = sw.Receiver(sw.StepForward(threshold=0.1), period=2000)
+        >>> for number, rate in enumerate([0, 0.25]):
+        ...     for frame in sender.encode([rate, 0, 0, 0, 0, 9.8]):
+        ...         receiver.hear(frame)
+        ...     receiver.advance((number + 1) * 2000)
+        >>> receiver.values.round(1).tolist()
+        [0.1, 0.0, 0.0, 0.0, 0.0, 9.8]
+        """
+        self._has_begun = True
         self._native.advance(now)
+
+    def __reduce__(self) -> Any:
+        return _again(self)
 
     @property
     def values(self) -> NDArray[np.float64]:
@@ -108,11 +164,19 @@ class Receiver:
         return self._native.lost()
 
 
-def _filters(filter: Filter | Sequence[Filter | None] | None) -> list:
+def _again(end: Sender | Receiver) -> Any:
+    """What an end is made of."""
+    if end._has_begun:
+        name = type(end).__name__.lower()
+        raise Error(f"this {name} is at work: a pickle has what it was made of, and not what it did since")
+    return type(end), end._made_of
+
+
+def _filters(filter: Filter | Sequence[Filter | None] | None) -> list[Any]:
     own = list(filter) if isinstance(filter, Sequence) else [filter] * 6
     return [one and one._native for one in own]
 
 
-def _six(schemes: Scheme | Sequence[Scheme]) -> list:
+def _six(schemes: Scheme | Sequence[Scheme]) -> list[Any]:
     own = list(schemes) if isinstance(schemes, Sequence) else [schemes] * 6
     return [scheme._coder for scheme in own]

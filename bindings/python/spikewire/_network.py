@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -11,6 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
+from ._arrays import Number, read
+from ._errors import Error, checked
+from ._spikes import Spikes
 
 Framework = Literal["snntorch", "norse", "spikingjelly", "rockpool", "sinabs", "nir"]
 Reset = Literal[
@@ -19,7 +23,15 @@ Reset = Literal[
 
 
 class Ran(NamedTuple):
-    """The spikes and potentials of a network's last layer, by step."""
+    """The spikes and potentials of a network's last layer, by step.
+
+    >>> import spikewire as sw
+    >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
+    >>> network = sw.Network.from_toml(f"layers = [{one}]")
+    >>> ran = network.run([[0], [0, 1]])
+    >>> ran.spikes.tolist(), ran.potentials.tolist()
+    ([[False], [True]], [[0.75], [0.0]])
+    """
 
     #: Whether each neuron fired: (steps, neurons).
     spikes: NDArray[np.bool_]
@@ -29,12 +41,20 @@ class Ran(NamedTuple):
 
 class Network:
     """A trained network in single precision: the bits of ``spikewire network --on controller`` and of `spikewire-network`
-    on every core. :meth:`from_nir` reads one; `spikewire.torch.Controller` trains one."""
+    on every core. :meth:`from_nir` reads one; `spikewire.torch.Controller` trains one.
+
+    >>> import spikewire as sw
+    >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
+    >>> network = sw.Network.from_toml(f"layers = [{one}]")
+    >>> network
+    Network of 2 inputs and layers of 1 neurons
+    """
 
     def __init__(self, native: _native.Network):
         self._native = native
 
     @classmethod
+    @checked
     def from_nir(
         cls,
         path: str | Path,
@@ -44,29 +64,50 @@ class Network:
         fires: Literal["above", "at"] | None = None,
         decay: Literal["euler", "exponential"] | None = None,
         current: Literal["new", "old", "whole"] | None = None,
-        dt: float | None = None,
+        dt: Number | None = None,
     ) -> Network:
         """Reads a NIR graph, or a network in JSON or TOML.
 
         A graph does not hold by which rule its neurons step. `framework` says some of it: what it leaves open are keywords,
         which an error lists. `reset` is one for all layers, or one for each that fires; `dt` are the seconds of a step.
 
-        Raises `ValueError` if the file is no network, or the rule is not said as a whole.
+        Raises `spikewire.Error` if the file is no network, or the rule is not said as a whole.
+
+        >>> import pathlib, tempfile, spikewire as sw
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "one.json"
+        >>> _ = path.write_text('{"layers": [{"weights": [[0.6, 0.3]], "keep": 0.5, "threshold": 1.0}]}')
+        >>> sw.Network.from_nir(path)
+        Network of 2 inputs and layers of 1 neurons
         """
         resets = [] if reset is None else [reset] if isinstance(reset, str) else list(reset)
         return cls(_native.Network(Path(path), (framework, fires, decay, current), resets, dt))
 
     @classmethod
     def from_toml(cls, text: str) -> Network:
-        """Reads what :meth:`to_toml` wrote."""
+        """Reads what :meth:`to_toml` wrote.
+
+        >>> import spikewire as sw
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
+        >>> network = sw.Network.from_toml(f"layers = [{one}]")
+        >>> sw.Network.from_toml(network.to_toml()).layers
+        [1]
+        """
         return cls(_native.Network.from_toml(text))
 
     def to_toml(self) -> str:
         """The network with the whole rule of its neurons; :meth:`from_nir` and ``spikewire network`` read it from a file
-        whose name ends in ``.toml``."""
+        whose name ends in ``.toml``.
+
+        >>> import spikewire as sw
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
+        >>> network = sw.Network.from_toml(f"layers = [{one}]")
+        >>> print(network.to_toml().splitlines()[0])
+        [[layers]]
+        """
         text: str = self._native.toml()
         return text
 
+    @checked
     def to_rust(
         self,
         spikes: ArrayLike | Sequence[Sequence[int]],
@@ -78,23 +119,38 @@ class Network:
 
         `spikes` is a recording as :meth:`run` takes it. The module's self-test runs its liveliest ten steps, and for `numbers` of
         8 bits the scales are searched on it. `source` is what the module's first line names.
+
+        >>> import spikewire as sw
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
+        >>> network = sw.Network.from_toml(f"layers = [{one}]")
+        >>> rust = network.to_rust([[0], [0, 1], [1]], source="one.toml")
+        >>> "pub fn is_intact() -> bool" in rust
+        True
         """
         text: str = self._native.rust(self._steps(spikes), numbers, source)
         return text
 
+    @checked
     def to_nir(self, path: str | Path) -> dict[str, Any]:
         """Writes a NIR graph, with times in steps. Returns the keywords with which :meth:`from_nir` gives the same network
         again. Needs the package ``nir``.
 
-        Raises `ValueError` if neurons with a constant input beside their current do not leak, if a spike subtracts another
+        Raises `spikewire.Error` if neurons with a constant input beside their current do not leak, if a spike subtracts another
         amount than the threshold, or if layers differ in when they fire or which current they take: no graph has these.
+
+        >>> import pathlib, tempfile, spikewire as sw
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
+        >>> network = sw.Network.from_toml(f"layers = [{one}]")
+        >>> keywords = network.to_nir(pathlib.Path(tempfile.mkdtemp()) / "one.nir")
+        >>> keywords["reset"]
+        ['to-value']
         """
         import nir
 
         layers = json.loads(self._native.json())["layers"]
         each = {name: {own[name] for own in layers if name in own} for name in ("fires", "current")}
         if any(len(own) > 1 for own in each.values()):
-            raise ValueError(f"layers have rules of their own, of which a graph's reader takes one: {each}")
+            raise Error(f"layers have rules of their own, of which a graph's reader takes one: {each}")
         nodes, edges, last = {"input": nir.Input({"input": np.array([self.inputs])})}, [], "input"
         for number, layer in enumerate(layers, 1):
             zeros = np.zeros(len(layer["weights"]))
@@ -104,14 +160,14 @@ class Network:
             # A step takes 1 / tau of the potential; where it takes nothing, time constants are so long that it is 0.
             tau, tau_syn = (1 / np.maximum(1 - own[name], 2.0**-60) for name in ("keep", "current_keep"))
             if (own["inner"] != 0)[own["keep"] == 1].any():
-                raise ValueError(f"{layer['name']}: a constant input beside the current needs a leak in a graph")
+                raise Error(f"{layer['name']}: a constant input beside the current needs a leak in a graph")
             leak = {"r": tau, "v_leak": own["inner"] * np.where(own["keep"] < 1, tau, 0)}
             fires = {}
             if "threshold" in layer:
                 subtracts = layer["reset"].startswith("subtract")
                 # A file leaves out what a spike subtracts if it is the threshold.
                 if subtracts and layer.get("reset_value", layer["threshold"]) != layer["threshold"]:
-                    raise ValueError(f"{layer['name']}: a spike subtracts the threshold in a graph, and no other amount")
+                    raise Error(f"{layer['name']}: a spike subtracts the threshold in a graph, and no other amount")
                 reset = zeros if subtracts else np.array(layer.get("reset_value", zeros))
                 fires = {"v_threshold": np.array(layer["threshold"]), "v_reset": reset}
             if "current" in layer:
@@ -139,14 +195,24 @@ class Network:
         """The number of neurons of each layer."""
         return self._native.layers()
 
+    @checked
     def run(self, spikes: ArrayLike | Sequence[Sequence[int]], *, numbers: Literal["f32", "i8"] = "f32") -> Ran:
         """Runs the network from rest, in `numbers` as :meth:`to_rust` writes them out of the same spikes.
 
-        `spikes` is an array (steps, inputs) of how often each input fires, whose spikes come by rising input, or a list with a
-        list for each step: the numbers of the inputs that fire, in order.
+        `spikes` is an array (steps, inputs) of how often each input fires, whose spikes come by rising input: of any library,
+        or a table with steps down its rows. Or it is a list with a list for each step: the numbers of the inputs that fire,
+        in order.
+
+        >>> import numpy as np, spikewire as sw
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
+        >>> network = sw.Network.from_toml(f"layers = [{one}]")
+        >>> counts = network.run(np.array([[1, 0], [1, 1]]))
+        >>> numbers = network.run([[0], [0, 1]])
+        >>> counts.spikes.tolist(), bool((counts.potentials == numbers.potentials).all())
+        ([[False], [True]], True)
         """
-        self.reset()
         steps = self._steps(spikes)
+        self.reset()
         if numbers == "f32":
             return Ran(*self._native.steps(steps))
         fired, potentials = self._native.ran(steps, numbers)
@@ -155,13 +221,51 @@ class Network:
             row[neurons] = True
         return Ran(spiked, potentials.astype(np.float32))
 
-    def _steps(self, spikes: ArrayLike | Sequence[Sequence[int]]) -> list[list[int]]:
-        return [_numbers(step, self.inputs) for step in spikes]
+    def _steps(self, spikes: Any) -> list[list[int]]:
+        if not _is_array(spikes):
+            return [self._step(step) for step in spikes]
+        if isinstance(spikes, Spikes):
+            counts, time = spikes.array, spikes._axis
+        else:
+            counts, time, _ = read(spikes)
+        if counts.ndim != 2:
+            raise Error(f"spikes are an array (steps, inputs) of counts, not {counts.shape}")
+        return self._numbers(np.moveaxis(counts, time or 0, 0))
 
+    def _step(self, spikes: Any) -> list[int]:
+        """The numbers of the inputs that fire in a step."""
+        if _is_array(spikes):
+            return self._numbers(read(spikes).array[None])[0]
+        numbers = []
+        for own in spikes:
+            if isinstance(own, (bool, np.bool_)):
+                raise Error(f"a list has the numbers of the inputs that fire, and not {own}; an array has counts")
+            number = operator.index(own)
+            if not 0 <= number < self.inputs:
+                raise Error(f"input {number}: the network has inputs 0 to {self.inputs - 1}")
+            numbers.append(number)
+        return numbers
+
+    def _numbers(self, counts: NDArray[Any]) -> list[list[int]]:
+        """The numbers of the inputs that fire, of counts (steps, inputs)."""
+        inputs = np.arange(self.inputs)
+        for step in counts:
+            if step.shape != inputs.shape or step.dtype.kind not in "fiub" or not _are_counts(step):
+                raise Error(f"a step has {self.inputs} counts of spikes, not {step!r}")
+        return [np.repeat(inputs, step.astype(int)).tolist() for step in counts]
+
+    @checked
     def step(self, spikes: ArrayLike | Sequence[int]) -> NDArray[np.float32]:
         """Takes a step from where the last one ended, and returns the last layer's potentials. `spikes` is a row of what
-        :meth:`run` takes."""
-        self._native.step(_numbers(spikes, self.inputs))
+        :meth:`run` takes.
+
+        >>> import numpy as np, spikewire as sw
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
+        >>> network = sw.Network.from_toml(f"layers = [{one}]")
+        >>> network.step([0]).tolist(), network.step(np.array([0, 1])).tolist()
+        ([0.75], [0.625])
+        """
+        self._native.step(self._step(spikes))
         return self._native.potentials()
 
     @property
@@ -170,17 +274,36 @@ class Network:
         return self._native.fired()
 
     def reset(self) -> None:
-        """Puts the network at rest."""
+        """Puts the network at rest.
+
+        >>> import spikewire as sw
+        >>> one = '{name = "a", reset = "to-value", fires = "at", keep = [0.5], threshold = [1.0], weights = [[0.75, 0.25]]}'
+        >>> network = sw.Network.from_toml(f"layers = [{one}]")
+        >>> first = network.step([0])
+        >>> network.reset()
+        >>> bool(network.step([0]) == first)
+        True
+        """
         self._native.reset()
+
+    def __reduce__(self) -> Any:
+        return _again, (self.to_toml(),), self._native.state()
+
+    def __setstate__(self, state: Any) -> None:
+        self._native.set_state(state)
 
     def __repr__(self) -> str:
         return f"Network of {self.inputs} inputs and layers of {', '.join(map(str, self.layers))} neurons"
 
 
-def _numbers(step: ArrayLike | Sequence[int], inputs: int) -> list[int]:
-    """The numbers of the inputs that fire: lists have them, arrays have counts."""
-    if not isinstance(step, np.ndarray):
-        return [int(own) for own in step]
-    if step.shape != (inputs,) or (step < 0).any() or (step != np.trunc(step)).any():
-        raise ValueError(f"a step has {inputs} counts of spikes, not {step!r}")
-    return np.repeat(np.arange(inputs), step.astype(int)).tolist()
+def _is_array(spikes: Any) -> bool:
+    """Whether spikes come as counts, in an array or a table of any library: lists have the numbers of inputs."""
+    return hasattr(spikes, "shape") or hasattr(spikes, "__array__") or hasattr(spikes, "collect")
+
+
+def _are_counts(step: NDArray[Any]) -> bool:
+    return bool(np.isfinite(step).all() and (step >= 0).all() and (step == np.trunc(step)).all())
+
+
+def _again(toml: str) -> Network:
+    return Network.from_toml(toml)

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import secrets
-import warnings
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _progress, _weighted
-from ._arrays import row, samples, tell_cut, time_axis, time_last
+from ._arrays import Whole, codes_time_last, remark, remark_outside, row, samples, warn
+from ._errors import Error, checked
 from ._spikes import Spikes
 from ._stream import Decoder, Encoder
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 Own = TypeVar("Own", bound="Scheme")
 
@@ -35,11 +33,17 @@ class Scheme:
     """A spike code and what was given of its parameters, checked.
 
     What is not given a signal tells: :meth:`encode` finds it for each channel by itself, and :meth:`fit` once for all.
+
+    >>> import spikewire as sw
+    >>> scheme = sw.schemes["sf"](threshold=0.1)
+    >>> isinstance(scheme, sw.Scheme), scheme.name, scheme.sample, scheme.parameters
+    (True, 'sf', 'f32', {'threshold': 0.1})
     """
 
     #: What the catalogue says of it.
     _info: dict[str, Any]
 
+    @checked
     def __init__(self, sample: str = "f32", paper: bool = False, **parameters: Any):
         kinds = {own["name"]: own["kind"] for own in self._info["parameters"]}
         given = {name: _checked(name, kinds.get(name), value) for name, value in parameters.items() if value is not None}
@@ -50,7 +54,7 @@ class Scheme:
         fixed = {name: value for name, value in given.items() if not isinstance(value, np.random.Generator)}
         self._coder = _native.Coder(self._info["name"], self._sample, _plain(fixed), self._paper)
         for words in self._coder.cut():
-            warnings.warn(words, stacklevel=2)
+            warn(words)
 
     def _seeded(self) -> Any:
         """The compiled scheme, whose draws begin where those of the next call do."""
@@ -94,10 +98,11 @@ class Scheme:
         """
         return self._coder.shape()[1]
 
-    def fit(self: Own, x: ArrayLike, per_channel: bool = False, axis: int = -1) -> Own:
+    def fit(self: Own, x: ArrayLike, per_channel: bool = False, axis: int | None = None) -> Own:
         """This scheme with the parameters that `x` tells: the one that flies.
 
-        It is one for all channels, or with `per_channel` has a value for each. `axis` is the one of time.
+        It is one for all channels, or with `per_channel` has a value for each. `axis` is the one of time, as for
+        :meth:`encode`.
 
         >>> import spikewire as sw
         >>> sw.Hough(filter="triang:3").fit([[-2.0, 1.0], [0.5, 3.0]]).parameters["shift"]
@@ -105,9 +110,9 @@ class Scheme:
         >>> sw.Hough(filter="triang:3").fit([[-2.0, 1.0], [0.5, 3.0]], per_channel=True).parameters["shift"]
         [-2.0, 0.5]
         """
-        x = time_last(samples(x, self._sample), axis)
+        _, x = samples(x, axis)
         fitted = self._coder.fit(x, not per_channel, True)
-        tell_cut(self._sample, x)
+        remark(self._sample, x)
         options = dict(fitted.keywords(0))
         if per_channel:
             all_options = [dict(fitted.keywords(channel)) for channel in range(int(np.prod(x.shape[:-1])))]
@@ -115,7 +120,7 @@ class Scheme:
                 values = [own[name] for own in all_options]
                 if any(value != values[0] for value in values):
                     if not all(isinstance(value, float) for value in values):
-                        raise ValueError(f"channels differ in {name}, which has one value for all: fit each by itself")
+                        raise Error(f"channels differ in {name}, which has one value for all: fit each by itself")
                     options[name] = values
         kept = ("start", "seed")
         return self._of(options, self._sample, {name: self._given[name] for name in kept if name in self._given})
@@ -142,21 +147,50 @@ class Scheme:
 
         The `directory` must not be there; functions are called after `name`, as ``sw_codec_encode``. `spikewire` is a
         checkout; the published crates unless given.
+
+        >>> import pathlib, tempfile, spikewire as sw
+        >>> place = pathlib.Path(tempfile.mkdtemp()) / "roll"
+        >>> sw.StepForward(threshold=0.35).to_c(place, name="roll")
+        >>> (place / "Cargo.toml").is_file()
+        True
         """
         _native.to_c(self._coder, name, Path(directory), None if spikewire is None else Path(spikewire))
 
     def to_toml(self) -> str:
-        """It as a file of parameters, for ``--params`` of the laptop program."""
+        """It as a file of parameters, for ``--params`` of the laptop program; :meth:`from_toml` reads it.
+
+        >>> import spikewire as sw
+        >>> print(sw.StepForward(threshold=0.35).to_toml(), end="")
+        scheme = "sf"
+        sample = "f32"
+        threshold = 0.35
+        """
         return _native.to_toml(self._coder, [])
 
+    @staticmethod
+    @checked
+    def from_toml(file: str | Path) -> Scheme:
+        """The scheme that a file of parameters describes: what :meth:`to_toml` and ``spikewire tune --emit toml`` write.
+
+        `file` is a text, or a :class:`~pathlib.Path` to a file.
+
+        >>> import spikewire as sw
+        >>> sw.Scheme.from_toml('scheme = "sf"\\nthreshold = 0.35\\n')
+        StepForward(threshold=0.35)
+        """
+        place, text = (str(file), file.read_text(encoding="utf-8")) if isinstance(file, Path) else ("TOML", file)
+        name, sample, options = _native.from_toml(place, text)
+        return _again(name, {**dict(options), "sample": sample})
+
     def encode(
-        self, x: ArrayLike, progress: bool | Callable[[int, int], object] | None = None, axis: int = -1
+        self, x: ArrayLike, progress: bool | Callable[[int, int], object] | None = None, axis: int | None = None
     ) -> Spikes:
         """The spikes of `x`, an array (samples,) or (channels, samples) or (…, samples) of floats or integers.
 
-        `axis` is the one of time, where it is not the last: 0 for (time, batch, channels). `progress`: a function of what
-        is done and of the total, ``True`` for a bar, ``False`` for none; unless given, a bar on work of some seconds in a
-        terminal.
+        `axis` is the one of time, where it is not the last: 0 for (time, batch, channels). Of a table, such as a frame of
+        pandas or polars, it is that of the rows, and columns are channels; of xarray, the dimension ``time``. `progress`: a
+        function of what is done and of the total, ``True`` for a bar, ``False`` for none; unless given, a bar on work of
+        some seconds in a terminal.
 
         A code by chance draws afresh in each call, and apart in each channel. With an integer as ``seed`` it draws the
         same in each call; with a ``numpy.random.Generator``, what comes next of it.
@@ -166,35 +200,37 @@ class Scheme:
         >>> spikes.shape, spikes.decode().shape
         ((100, 3), (100, 3))
         """
-        x = time_last(samples(x, self._sample), axis)
+        (_, time, names), x = samples(x, axis)
         if not x.size:
             inner = self._coder.shape()
-            return Spikes(self, None, np.zeros(0, np.int8), x.shape, inner, axis)
+            return Spikes(self, None, np.zeros(0, np.int8), x.shape, inner, time, names)
         fitted = self._seeded().fit(x, False, False)
         shape = fitted.shape()
         with _progress.bar(progress, "encode") as tell:
-            flat = fitted.encode(x, tell)
-        tell_cut(self._sample, x)
-        return Spikes(self, fitted, flat, x.shape, shape, axis)
+            flat, is_outside = fitted.encode(x, tell)
+        remark(self._sample, x)
+        if is_outside:
+            remark_outside(self._coder.ranges(), self._sample, x)
+        return Spikes(self, fitted, flat, x.shape, shape, time, names)
 
-    def decode(self, spikes: Spikes | ArrayLike, first: ArrayLike | None = None, axis: int = -1) -> NDArray[Any]:
+    def decode(self, spikes: Spikes | ArrayLike, first: ArrayLike | None = None, axis: int | None = None) -> NDArray[Any]:
         """The values of `spikes`: of :class:`Spikes`, or of an array as their ``array`` is.
 
         An array does not say where a signal began. So a code of steps needs its `first` sample, one for each channel
-        or one for all; and what a signal else tells must be given, or found by :meth:`fit`. `axis` is the one of time,
-        counted without the axes of a sample's neurons and sub-timesteps.
+        or one for all; and what a signal else tells must be given, or found by :meth:`fit`. `axis` is the one of time, as
+        for :meth:`encode`, counted without the axes of a sample's neurons and sub-timesteps.
 
         Spikes that no encoder of the scheme sends are an error; :meth:`decode_weighted` takes what a network gives.
+
+        >>> import spikewire as sw
+        >>> sw.StepForward(threshold=0.5).decode([[0, 1], [0, -1]], first=[1.0, 2.0]).tolist()
+        [[1.0, 1.5], [2.0, 1.5]]
         """
         if isinstance(spikes, Spikes):
             return spikes.decode()
-        codes = np.asarray(spikes)
         inner = row(self._coder.shape())
-        axes = codes.ndim - len(inner)
-        if axes > 0:
-            axis = time_axis(axis, axes)
-            codes = np.moveaxis(codes, axis, axes - 1)
-        outer = codes.shape[:axes]
+        codes, axis = codes_time_last(spikes, self._coder.shape(), axis)
+        outer = codes.shape[: codes.ndim - len(inner)]
         if len(outer) <= 1:
             return self.decoder(first).decode(codes)
         channels = int(np.prod(outer[:-1]))
@@ -205,7 +241,7 @@ class Scheme:
         return np.moveaxis(values, -1, axis)
 
     def decode_weighted(
-        self, weights: ArrayLike, first: ArrayLike | None = None, axis: int = -1
+        self, weights: ArrayLike, first: ArrayLike | None = None, axis: int | None = None
     ) -> NDArray[np.float64]:
         """The values of `weights` in the place of spikes, such as rates in 0 to 1 or what a network gives.
 
@@ -219,12 +255,24 @@ class Scheme:
         """
         return _weighted.decode(self, weights, first, axis)
 
-    def encoder(self, channels: int | None = None) -> Encoder:
-        """An encoder that keeps its state between chunks (samples,), or (channels, samples) of so many channels."""
+    def encoder(self, channels: Whole | None = None) -> Encoder:
+        """An encoder that keeps its state between chunks (samples,), or (channels, samples) of so many channels.
+
+        >>> import spikewire as sw
+        >>> encoder = sw.StepForward(threshold=0.5).encoder()
+        >>> encoder.encode([0.0, 1.0]).tolist(), encoder.encode([2.0]).tolist()
+        ([0, 1], [1])
+        """
         return Encoder(self, channels)
 
-    def decoder(self, first: ArrayLike | None = None, channels: int | None = None) -> Decoder:
-        """A decoder that keeps its state between chunks; a code of steps starts from the `first` sample."""
+    def decoder(self, first: ArrayLike | None = None, channels: Whole | None = None) -> Decoder:
+        """A decoder that keeps its state between chunks; a code of steps starts from the `first` sample.
+
+        >>> import spikewire as sw
+        >>> decoder = sw.StepForward(threshold=0.5).decoder(first=0.0)
+        >>> decoder.decode([0, 1]).tolist(), decoder.decode([1]).tolist()
+        ([0.0, 0.5], [1.0])
+        """
         return Decoder(self, first, channels)
 
     def __repr__(self) -> str:
@@ -251,7 +299,7 @@ class Scheme:
         return _again, (self.name, {"sample": self._sample, "paper": self._paper, **self._given})
 
 
-def _again(name, keywords):
+def _again(name: str, keywords: dict[str, Any]) -> Scheme:
     from ._schemes import schemes
 
     return schemes[name](**keywords)
@@ -266,10 +314,10 @@ def _checked(name, kind, value):
     """A keyword's value, with truth only where it is asked for."""
     if isinstance(value, (bool, np.bool_)):
         if kind not in ("flag", None):
-            raise ValueError(f"{name}={value} must be {KINDS[kind]}, not True or False")
+            raise Error(f"{name}={value} must be {KINDS[kind]}, not True or False")
         return bool(value)
     if isinstance(value, np.random.Generator) and name != "seed":
-        raise ValueError(f"{name} takes no generator; seed does")
+        raise Error(f"{name} takes no generator; seed does")
     return value
 
 

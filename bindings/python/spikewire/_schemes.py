@@ -4,6 +4,7 @@ import inspect
 import textwrap
 
 from . import _native
+from ._errors import CallError, Unknown
 from ._scheme import KINDS, Scheme
 
 #: What is not given of a code by chance.
@@ -28,6 +29,17 @@ def _told(own):
     return f"{own['name']}:\n" + textwrap.indent("\n".join(lines), "    ")
 
 
+def _example(parameters):
+    """Keywords for what neither a default nor a signal tells; of two that stand for each other, the first."""
+    given = []
+    for own in parameters:
+        is_open = own["default"] is None and own["found"] is None
+        if is_open and own["example"] and not own["help"].startswith("in the place of"):
+            example = own["example"] if own["kind"] in ("number", "count") else repr(own["example"])
+            given.append(f"{own['name']}={example}")
+    return ", ".join(given)
+
+
 def _class(info):
     parameters = "\n".join(_told(own) for own in info["parameters"])
     document = f"""{info["words"][0].upper()}{info["words"][1:]}, `{info["name"]}`: good for {info["good_for"]}.
@@ -38,6 +50,12 @@ sample:
     rounded to it
 paper:
     the settings of the paper, scaled to the signal's range, for what is not given
+
+>>> import numpy as np, spikewire as sw
+>>> x = 3 * np.sin(np.linspace(0, 20, 300))
+>>> spikes = sw.{info["type_name"]}({_example(info["parameters"])}).encode(x)
+>>> spikes.count > 0, spikes.decode().shape
+(True, (300,))
 """
     keyword = inspect.Parameter.KEYWORD_ONLY
     names = [inspect.Parameter(own["name"], keyword, default=None) for own in info["parameters"]]
@@ -49,10 +67,10 @@ paper:
 
     def __init__(self, *args, **keywords):
         if args:
-            raise TypeError(f"{info['type_name']} takes keywords only, as {own_names[0]}={args[0]!r}")
+            raise CallError(f"{info['type_name']} takes keywords only, as {own_names[0]}={args[0]!r}")
         unknown = [name for name in keywords if name not in own_names and name not in ("sample", "paper")]
         if unknown:
-            raise TypeError(f"{info['type_name']} takes no {unknown[0]}; it takes {', '.join(own_names)}")
+            raise CallError(f"{info['type_name']} takes no {unknown[0]}; it takes {', '.join(own_names)}")
         Scheme.__init__(self, **keywords)
 
     __init__.__signature__ = inspect.Signature(
@@ -64,7 +82,7 @@ paper:
 
 class _ByName(dict):
     def __missing__(self, name):
-        raise KeyError(f"there is no scheme {name!r}; there are {', '.join(self)}")
+        raise Unknown(f"there is no scheme {name!r}; there are {', '.join(self)}")
 
 
 #: The classes by their short names, in the order of the catalogue.

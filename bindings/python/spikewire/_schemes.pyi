@@ -1,10 +1,10 @@
 """The classes of the schemes. Generated from the catalogue; a test says how when it has changed."""
 
-from collections.abc import Sequence
 from typing import Literal
 
 from numpy.random import Generator
 
+from ._arrays import Number, Numbers, Whole
 from ._scheme import Scheme
 
 class TemporalContrast(Scheme):
@@ -28,16 +28,22 @@ class TemporalContrast(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.TemporalContrast(threshold=0.1).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        threshold: float | Sequence[float] | None = None,
-        factor: float | Sequence[float] | None = None,
+        threshold: Number | Numbers | None = None,
+        factor: Number | Numbers | None = None,
         magnitudes: bool | None = None,
-        step: str | float | Sequence[float] | None = None,
-        start: float | Sequence[float] | None = None,
+        step: str | Number | Numbers | None = None,
+        start: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -58,14 +64,20 @@ class AdaptiveContrast(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.AdaptiveContrast(threshold=0.1, doublings=4).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        threshold: float | Sequence[float] | None = None,
-        doublings: int | None = None,
-        start: float | Sequence[float] | None = None,
+        threshold: Number | Numbers | None = None,
+        doublings: Whole | None = None,
+        start: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -87,14 +99,20 @@ class MovingWindow(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.MovingWindow(threshold=0.1, window=5).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        threshold: float | Sequence[float] | None = None,
-        window: int | None = None,
-        start: float | Sequence[float] | None = None,
+        threshold: Number | Numbers | None = None,
+        window: Whole | None = None,
+        start: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -113,13 +131,19 @@ class StepForward(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.StepForward(threshold=0.1).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        threshold: float | Sequence[float] | None = None,
-        start: float | Sequence[float] | None = None,
+        threshold: Number | Numbers | None = None,
+        start: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -140,14 +164,20 @@ class SendOnDelta(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.SendOnDelta(threshold=0.1, spikes=4).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        threshold: float | Sequence[float] | None = None,
-        spikes: int | None = None,
-        start: float | Sequence[float] | None = None,
+        threshold: Number | Numbers | None = None,
+        spikes: Whole | None = None,
+        start: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -170,15 +200,21 @@ class AdaptiveStepForward(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.AdaptiveStepForward(threshold=0.1, doublings=3).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        threshold: float | Sequence[float] | None = None,
-        doublings: int | None = None,
-        run: int | None = None,
-        start: float | Sequence[float] | None = None,
+        threshold: Number | Numbers | None = None,
+        doublings: Whole | None = None,
+        run: Whole | None = None,
+        start: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -204,16 +240,22 @@ class Bsa(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.Bsa(filter='triang:15,peak=2', threshold=0.955).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        filter: str | Sequence[float] | None = None,
-        shift: float | Sequence[float] | None = None,
+        filter: str | Numbers | None = None,
+        shift: Number | Numbers | None = None,
         form: Literal["aligned", "toolbox"] | None = None,
         criterion: Literal["sub", "mul"] | None = None,
-        threshold: float | Sequence[float] | None = None,
+        threshold: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -233,13 +275,19 @@ class Hough(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.Hough(filter='triang:15,peak=2').encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        filter: str | Sequence[float] | None = None,
-        shift: float | Sequence[float] | None = None,
+        filter: str | Numbers | None = None,
+        shift: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -262,14 +310,20 @@ class ThresholdHough(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.ThresholdHough(filter='triang:15,peak=2', threshold=0.1).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        filter: str | Sequence[float] | None = None,
-        shift: float | Sequence[float] | None = None,
-        threshold: float | Sequence[float] | None = None,
+        filter: str | Numbers | None = None,
+        shift: Number | Numbers | None = None,
+        threshold: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -291,15 +345,21 @@ class IntegrateAndFire(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.IntegrateAndFire(threshold=0.5, spikes=4).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        threshold: float | Sequence[float] | None = None,
-        reference: float | Sequence[float] | None = None,
-        power: int | None = None,
-        spikes: int | None = None,
+        threshold: Number | Numbers | None = None,
+        reference: Number | Numbers | None = None,
+        power: Whole | None = None,
+        spikes: Whole | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -321,15 +381,21 @@ class LeakyIntegrateAndFire(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.LeakyIntegrateAndFire(threshold=0.5, spikes=4).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        threshold: float | Sequence[float] | None = None,
-        reference: float | Sequence[float] | None = None,
-        power: int | None = None,
-        spikes: int | None = None,
+        threshold: Number | Numbers | None = None,
+        reference: Number | Numbers | None = None,
+        power: Whole | None = None,
+        spikes: Whole | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -353,15 +419,21 @@ class SigmaDelta(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.SigmaDelta().encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
         mean: Literal["average", "window"] | None = None,
-        power: int | None = None,
+        power: Whole | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -388,16 +460,22 @@ class Bernoulli(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.Bernoulli().encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
         mean: Literal["average", "window"] | None = None,
-        power: int | None = None,
-        seed: int | Generator | None = None,
+        power: Whole | None = None,
+        seed: Whole | Generator | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -426,17 +504,23 @@ class WeightedBurst(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.WeightedBurst(weight=1).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
-        weight: float | Sequence[float] | None = None,
-        doublings: int | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
+        weight: Number | Numbers | None = None,
+        doublings: Whole | None = None,
         mean: Literal["average", "window"] | None = None,
-        power: int | None = None,
+        power: Whole | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -460,15 +544,21 @@ class Position(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.Position(neurons=20).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        centres: str | float | Sequence[float] | None = None,
-        neurons: int | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
+        centres: str | Number | Numbers | None = None,
+        neurons: Whole | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -489,14 +579,20 @@ class Gaussian(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.Gaussian(neurons=20).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        neurons: int | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
+        neurons: Whole | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -523,17 +619,23 @@ class Slots(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.Slots(neurons=20, slots=10).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        neurons: int | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
-        slots: int | None = None,
-        beta: float | Sequence[float] | None = None,
-        floor: int | None = None,
+        neurons: Whole | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
+        slots: Whole | None = None,
+        beta: Number | Numbers | None = None,
+        floor: Whole | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -559,16 +661,22 @@ class Probabilistic(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.Probabilistic(neurons=20).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        neurons: int | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
-        beta: float | Sequence[float] | None = None,
-        seed: int | Generator | None = None,
+        neurons: Whole | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
+        beta: Number | Numbers | None = None,
+        seed: Whole | Generator | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -597,17 +705,23 @@ class NonLinearGaussian(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.NonLinearGaussian(neurons=20).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        centres: str | float | Sequence[float] | None = None,
-        widths: str | float | Sequence[float] | None = None,
-        companding: float | Sequence[float] | None = None,
-        neurons: int | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
+        centres: str | Number | Numbers | None = None,
+        widths: str | Number | Numbers | None = None,
+        companding: Number | Numbers | None = None,
+        neurons: Whole | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -642,20 +756,26 @@ class NonLinearSlots(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.NonLinearSlots(neurons=20, slots=10).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        centres: str | float | Sequence[float] | None = None,
-        widths: str | float | Sequence[float] | None = None,
-        companding: float | Sequence[float] | None = None,
-        neurons: int | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
-        slots: int | None = None,
-        beta: float | Sequence[float] | None = None,
-        floor: int | None = None,
+        centres: str | Number | Numbers | None = None,
+        widths: str | Number | Numbers | None = None,
+        companding: Number | Numbers | None = None,
+        neurons: Whole | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
+        slots: Whole | None = None,
+        beta: Number | Numbers | None = None,
+        floor: Whole | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -681,16 +801,22 @@ class RankOrder(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.RankOrder(neurons=20, spikes=3).encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        centres: str | float | Sequence[float] | None = None,
-        neurons: int | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
-        spikes: int | None = None,
+        centres: str | Number | Numbers | None = None,
+        neurons: Whole | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
+        spikes: Whole | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -716,16 +842,22 @@ class FirstSpike(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.FirstSpike().encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        edges: str | float | Sequence[float] | None = None,
-        slots: int | None = None,
-        ratio: float | Sequence[float] | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
+        edges: str | Number | Numbers | None = None,
+        slots: Whole | None = None,
+        ratio: Number | Numbers | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -752,17 +884,23 @@ class LatencyPhase(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.LatencyPhase().encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        neurons: int | None = None,
-        latencies: int | None = None,
-        period: int | None = None,
-        spacing: int | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
+        neurons: Whole | None = None,
+        latencies: Whole | None = None,
+        period: Whole | None = None,
+        spacing: Whole | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -783,14 +921,20 @@ class WeightedPhase(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.WeightedPhase().encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        slots: int | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
+        slots: Whole | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...
@@ -817,17 +961,23 @@ class Burst(Scheme):
         rounded to it
     paper:
         the settings of the paper, scaled to the signal's range, for what is not given
+
+    >>> import numpy as np, spikewire as sw
+    >>> x = 3 * np.sin(np.linspace(0, 20, 300))
+    >>> spikes = sw.Burst().encode(x)
+    >>> spikes.count > 0, spikes.decode().shape
+    (True, (300,))
     """
 
     def __init__(
         self,
         *,
-        slots: int | None = None,
-        spikes: int | None = None,
-        shortest: int | None = None,
-        longest: int | None = None,
-        min: float | Sequence[float] | None = None,
-        max: float | Sequence[float] | None = None,
+        slots: Whole | None = None,
+        spikes: Whole | None = None,
+        shortest: Whole | None = None,
+        longest: Whole | None = None,
+        min: Number | Numbers | None = None,
+        max: Number | Numbers | None = None,
         sample: str = "f32",
         paper: bool = False,
     ) -> None: ...

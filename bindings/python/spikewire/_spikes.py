@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import copy
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
-from numpy.lib.mixins import NDArrayOperatorsMixin
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _progress
+from . import _scheme as _base
 from ._arrays import cells, row
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from ._scheme import Scheme
+from ._errors import CallError, Error
+from ._times import Period
 
 
-class Spikes(NDArrayOperatorsMixin):
+class Spikes(np.ndarray[Any, np.dtype[np.int8]]):
     """The spikes of an array of samples, and all that decoding needs.
 
-    They calculate and compare as ``array`` does, cell by cell, and what comes of it is an array of NumPy.
+    They are an array of NumPy themselves, for all that takes one, such as ``torch.from_numpy`` and ``pandas.DataFrame``;
+    they calculate and compare cell by cell, and what comes of it, a part of them too, is a plain array.
 
     >>> import numpy as np, spikewire as sw
     >>> spikes = sw.StepForward(threshold=0.4).encode([0.0, 1.0, 1.0, 0.0])
@@ -32,15 +32,37 @@ class Spikes(NDArrayOperatorsMixin):
     these before it.
     """
 
-    def __init__(
-        self, scheme: Scheme, fitted: Any, flat: NDArray[np.int8], shape: tuple[Any, ...], cell_shape: tuple[Any, ...], axis: int = -1
-    ):
-        self._scheme, self._fitted, self._shape = scheme, fitted, cell_shape
-        self._axes, self._axis = len(shape), axis % len(shape)
-        #: The spikes, ``int8``.
-        self.array: NDArray[np.int8] = np.moveaxis(
-            flat.reshape(*shape, *row(cell_shape)), self._axes - 1, self._axis
-        )
+    #: The spikes as a plain array, ``int8``, which shares their memory.
+    array: NDArray[np.int8]
+    #: What the channels are called, if the samples came in a table or an array with labels.
+    names: list[str] | None
+
+    _scheme: _base.Scheme
+    _fitted: Any
+    _shape: tuple[int, int]
+    _axis: int
+
+    def __new__(
+        cls,
+        scheme: _base.Scheme,
+        fitted: Any,
+        flat: NDArray[np.int8],
+        shape: tuple[Any, ...],
+        cell_shape: tuple[int, int],
+        axis: int = -1,
+        names: list[str] | None = None,
+    ) -> Spikes:
+        axes, axis = len(shape), axis % len(shape)
+        array = np.moveaxis(flat.reshape(*shape, *row(cell_shape)), axes - 1, axis)
+        own = array.view(cls)
+        own.array, own.names = array, names
+        own._scheme, own._fitted, own._shape, own._axis = scheme, fitted, cell_shape, axis
+        return own
+
+    @property
+    def _axes(self) -> int:
+        """How many axes the samples had."""
+        return self.ndim - len(row(self._shape))
 
     def _flat(self) -> tuple[NDArray[np.int8], tuple[int, ...]]:
         """The cells, flat, one channel after the other, and the shape of what they decode to, with time last."""
@@ -48,14 +70,9 @@ class Spikes(NDArrayOperatorsMixin):
         return cells(by_time, self._shape, type(self._scheme).__name__)
 
     @property
-    def scheme(self) -> Scheme:
+    def scheme(self) -> _base.Scheme:
         """The scheme that made them."""
         return self._scheme
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """The shape of ``array``."""
-        return self.array.shape
 
     @property
     def neurons(self) -> int:
@@ -93,7 +110,12 @@ class Spikes(NDArrayOperatorsMixin):
         return (1 - self.count / max(self.samples, 1)) * 100
 
     def decode(self, progress: bool | Callable[[int, int], object] | None = None) -> NDArray[Any]:
-        """What a decoder makes of them: ``float32`` of ``f32``, ``int16`` of ``i16``, else ``float64``."""
+        """What a decoder makes of them: ``float32`` of ``f32``, ``int16`` of ``i16``, else ``float64``.
+
+        >>> import spikewire as sw
+        >>> sw.StepForward(threshold=0.5).encode([0.0, 1.0, 2.0]).decode().tolist()
+        [0.0, 0.5, 1.0]
+        """
         flat, outer = self._flat()
         channels = int(np.prod(outer[:-1]))
         if self._fitted is None:
@@ -104,11 +126,16 @@ class Spikes(NDArrayOperatorsMixin):
                 values = self._fitted.decode(flat, channels, tell).reshape(outer)
         return np.moveaxis(values, -1, self._axis)
 
-    def events(self, period: float = 1, times: ArrayLike | None = None) -> NDArray[Any]:
+    def events(self, period: Period = 1, times: ArrayLike | None = None) -> NDArray[Any]:
         """The spikes as a structured array, in the order of time; see :data:`~spikewire.EVENTS`.
 
-        A sample lasts `period` µs, or `times` has each sample's time in µs. Channels count their neurons on: the
-        address of the second channel's first neuron is ``neurons``.
+        A sample lasts `period` µs or a timedelta, or `times` has each sample's time: in whole µs, in seconds as floats, or
+        as ``datetime64``. Channels count their neurons on: the address of the second channel's first neuron is ``neurons``.
+
+        >>> import spikewire as sw
+        >>> spikes = sw.StepForward(threshold=0.5).encode([0.0, 1.0, -1.0])
+        >>> spikes.events(period=1000).tolist(), spikes.events(times=[0.0, 0.5, 0.75]).tolist()
+        ([(1000, 0, 1), (2000, 0, 0)], [(500000, 0, 1), (750000, 0, 0)])
         """
         from ._bank import EVENTS, events
 
@@ -122,6 +149,12 @@ class Spikes(NDArrayOperatorsMixin):
 
         Each address is a row; a spike down is of another colour than one up. Time is in seconds if `rate`, in samples a
         second, is given, and else in samples. `style` goes to ``scatter``.
+
+        >>> import spikewire as sw
+        >>> from matplotlib.figure import Figure
+        >>> axes = sw.StepForward(threshold=0.5).encode([0.0, 1.0, 0.0]).raster(Figure().subplots(), rate=200)
+        >>> axes.get_xlabel()
+        'time in s'
         """
         if axes is None:
             from matplotlib import pyplot
@@ -143,6 +176,11 @@ class Spikes(NDArrayOperatorsMixin):
 
         FNV-1a of 64 bits; `before` is the hash of the channels before these, if there are any. `values` is what
         another decoder made of the spikes.
+
+        >>> import spikewire as sw
+        >>> spikes = sw.StepForward(threshold=0.5).encode([0.0, 1.0, 0.0])
+        >>> f"{spikes.fingerprint():016x}"
+        '5432d4e8ff2e59c5'
         """
         flat, _ = self._flat()
         values = self.decode(progress=False) if values is None else np.asarray(values)
@@ -152,73 +190,73 @@ class Spikes(NDArrayOperatorsMixin):
     def __reduce__(self) -> Any:
         flat, outer = self._flat()
         parts = self._fitted.parts() if self._fitted else None
-        return _again, (self._scheme, parts, flat, outer, self._shape, self._axis)
+        return _again, (self._scheme, parts, flat, outer, self._shape, self._axis, self.names)
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
-        if copy is False and dtype not in (None, self.array.dtype):
-            raise ValueError(f"spikes are {self.array.dtype}; {dtype} needs a copy")
-        array = self.array if dtype is None else self.array.astype(dtype, copy=False)
-        return array.copy() if copy else array
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        return self.__reduce__()
+
+    def __copy__(self) -> Spikes:
+        function, arguments = self.__reduce__()
+        return function(*arguments)
+
+    def __deepcopy__(self, memo: Any) -> Spikes:
+        function, arguments = self.__reduce__()
+        return function(*copy.deepcopy(arguments, memo))
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **keywords: Any) -> Any:
         if any(isinstance(own, Spikes) for own in keywords.get("out", ())):
-            raise TypeError("spikes are not written to; their array is")
-        arrays = (own.array if isinstance(own, Spikes) else own for own in inputs)
-        return getattr(ufunc, method)(*arrays, **keywords)
+            raise CallError("spikes are not written to; their array is")
+        return getattr(ufunc, method)(*map(_plain, inputs), **keywords)
 
-    def __buffer__(self, flags: int) -> memoryview:
-        # Python asks for it from 3.12.
-        return self.array.__buffer__(flags)
-
-    def __dlpack__(self, **keywords: Any) -> Any:
-        return self.array.__dlpack__(**keywords)
-
-    def __dlpack_device__(self) -> tuple[int, int]:
-        return self.array.__dlpack_device__()
-
-    @property
-    def ndim(self) -> int:
-        """The number of axes of ``array``."""
-        return self.array.ndim
-
-    @property
-    def size(self) -> int:
-        """The number of cells of ``array``."""
-        return self.array.size
-
-    @property
-    def dtype(self) -> np.dtype[np.int8]:
-        """``int8``."""
-        return self.array.dtype
-
-    @property
-    def T(self) -> NDArray[np.int8]:
-        """``array`` with its axes in reverse order."""
-        return self.array.T
-
-    def astype(self, dtype: DTypeLike, **keywords: Any) -> NDArray[Any]:
-        """``array`` in another type, as ``numpy.ndarray.astype``."""
-        return self.array.astype(dtype, **keywords)
-
-    def sum(self, axis: int | tuple[int, ...] | None = None, **keywords: Any) -> Any:
-        """The sum of the cells, up less down, as ``numpy.ndarray.sum``; :attr:`count` counts both."""
-        return self.array.sum(axis, **keywords)
-
-    def mean(self, axis: int | tuple[int, ...] | None = None, **keywords: Any) -> Any:
-        """The mean of the cells, as ``numpy.ndarray.mean``."""
-        return self.array.mean(axis, **keywords)
-
-    def __len__(self) -> int:
-        return len(self.array)
+    def __array_function__(self, function: Any, types: Any, arguments: Any, keywords: Any) -> Any:
+        made = super().__array_function__(function, types, arguments, keywords)
+        return type(made)(map(_plain, made)) if type(made) in (list, tuple) else _plain(made)
 
     def __getitem__(self, place: Any) -> Any:
-        return self.array[place]
+        return _plain(self)[place]
+
+    def __setitem__(self, place: Any, value: Any) -> None:
+        raise CallError("spikes are not written to; their array is")
+
+    def __iter__(self) -> Any:
+        return iter(_plain(self))
 
     def __repr__(self) -> str:
+        if not hasattr(self, "_scheme"):
+            # NumPy's own code made a copy that knows no scheme.
+            return repr(_plain(self))
         of = type(self._scheme).__name__
         return f"Spikes of {of}: {self.shape}, {self.count} spikes of {self.samples} samples"
 
+    __str__ = __repr__
 
-def _again(scheme, parts, flat, shape, cell_shape, axis):
+
+def _plain(own: Any) -> Any:
+    """An array of NumPy in the place of spikes."""
+    return np.ndarray.view(own, np.ndarray) if isinstance(own, Spikes) else own
+
+
+def _delegate(name: str) -> Any:
+    """A method or attribute of arrays, whose result is one of the plain array."""
+    words = f"``numpy.ndarray.{name}`` of the plain array."
+    if not callable(getattr(np.ndarray, name)):
+        return property(lambda self: getattr(_plain(self), name), doc=words)
+
+    def method(self: Spikes, *arguments: Any, **keywords: Any) -> Any:
+        return getattr(_plain(self), name)(*arguments, **keywords)
+
+    method.__name__, method.__doc__ = name, words
+    return method
+
+
+# Those that give an array would give spikes without a scheme.
+for _name in dir(np.ndarray):
+    if not _name.startswith("_") and _name not in ("shape", "strides", "dtype") and _name not in vars(Spikes):
+        setattr(Spikes, _name, _delegate(_name))
+
+
+def _again(
+    scheme: _base.Scheme, parts: Any, flat: NDArray[np.int8], shape: Any, cell_shape: Any, axis: int, names: list[str] | None
+) -> Spikes:
     fitted = _native.Fitted.of_parts(*parts) if parts else None
-    return Spikes(scheme, fitted, flat, shape, cell_shape, axis)
+    return Spikes(scheme, fitted, flat, shape, cell_shape, axis, names)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import cells, row, samples, tell_cut
-
-if TYPE_CHECKING:
-    from ._scheme import Scheme
+from . import _scheme as _base
+from ._arrays import Whole, cells, codes_time_last, read, remark, remark_outside, row, samples
+from ._errors import Error, checked
 
 
 class Encoder:
@@ -30,28 +29,43 @@ class Encoder:
     True
     """
 
-    def __init__(self, scheme: Scheme, channels: int | None = None):
+    @checked
+    def __init__(self, scheme: _base.Scheme, channels: Whole | None = None):
         if channels is not None and channels < 1:
-            raise ValueError(f"channels {channels} must be 1 or more")
+            raise Error(f"channels {channels} must be 1 or more")
         self._scheme, self._channels = scheme, channels
         self._native = scheme._seeded().encoder(channels or 1)
+        self._ranges = scheme._coder.ranges()
 
     def encode(self, x: ArrayLike) -> NDArray[np.int8]:
-        """The codes that the next samples, (samples,) or (channels, samples), complete: ``int8``, as ``Spikes.array``.
+        """The codes that the next samples, (samples,) or (channels, samples), complete: ``int8``, as ``Spikes.array``. Of a
+        table the columns are the channels.
 
         Those of a rate code are as many samples late as it looks ahead. Where one is not finite it is an error, and
         none is taken.
+
+        >>> import spikewire as sw
+        >>> encoder = sw.StepForward(threshold=0.5).encoder(channels=2)
+        >>> encoder.encode([[0.0, 1.0], [0.0, -1.0]]).tolist(), encoder.encode([[2.0], [0.5]]).tolist()
+        ([[0, 1], [0, -1]], [[1], [1]])
         """
-        x = samples(x, self._scheme.sample)
+        _, x = samples(x)
         if x.ndim != (1 if self._channels is None else 2):
             told = "(samples,)" if self._channels is None else f"({self._channels}, samples)"
-            raise ValueError(f"a chunk is an array {told}, not {x.shape}")
+            raise Error(f"a chunk is an array {told}, not {x.shape}")
         codes = self._rows(self._native.encode(x))
-        tell_cut(self._scheme.sample, x)
+        remark(self._scheme.sample, x)
+        remark_outside(self._ranges, self._scheme.sample, x)
         return codes
 
     def finish(self) -> NDArray[np.int8]:
-        """The codes of the samples that wait for later ones. The encoder is as at its start then."""
+        """The codes of the samples that wait for later ones. The encoder is as at its start then.
+
+        >>> import spikewire as sw
+        >>> encoder = sw.Hough(filter=[0.5, 1.0, 0.5], shift=0).encoder()
+        >>> encoder.encode([2.0, 2.0, 2.0, 2.0]).tolist(), encoder.finish().tolist()
+        ([1, 1], [0, 0])
+        """
         return self._rows(self._native.finish())
 
     def _rows(self, flat: NDArray[np.int8]) -> NDArray[np.int8]:
@@ -80,29 +94,36 @@ class Decoder:
     (array([1. , 1.5, 2. , 1.5], dtype=float32), array([2.], dtype=float32))
     """
 
-    def __init__(self, scheme: Scheme, first: ArrayLike | None = None, channels: int | None = None):
+    @checked
+    def __init__(self, scheme: _base.Scheme, first: ArrayLike | None = None, channels: Whole | None = None):
         has_first = scheme._info["has_first_value"] and "start" not in scheme.parameters
         if first is None and has_first:
-            raise ValueError(
+            raise Error(
                 f"{scheme.name} decodes from a first value: first=, the first sample of each channel, or start="
             )
-        if channels is None and np.ndim(first) == 1:
+        first = None if first is None else read(first).array
+        if channels is None and first is not None and first.ndim == 1:
             channels = len(first)
         self._scheme, self._channels = scheme, channels
         firsts = [None if first is None else float(own) for own in np.broadcast_to(first, (channels or 1,))]
         self._native = scheme._coder.decoder(firsts)
         if first is not None:
-            tell_cut(scheme.sample, np.array(firsts))
+            remark(scheme.sample, np.array(firsts)[:, None])
         self._shape = scheme._coder.shape()
 
     def decode(self, codes: ArrayLike) -> NDArray[Any]:
         """The values of the next codes, an array as :meth:`Encoder.encode` returns it.
 
         A code that no encoder sends is an error, and none of the rows is taken.
+
+        >>> import spikewire as sw
+        >>> sw.StepForward(threshold=0.5).decoder(first=[0.0, 5.0]).decode([[0, 1], [0, -1]]).tolist()
+        [[0.0, 0.5], [5.0, 4.5]]
         """
+        codes, _ = codes_time_last(codes, self._shape, None)
         flat, outer = cells(codes, self._shape, type(self._scheme).__name__)
         if outer[:-1] != (() if self._channels is None else (self._channels,)):
-            raise ValueError(f"there are {self._channels or 1} channels, not codes of the shape {np.shape(codes)}")
+            raise Error(f"there are {self._channels or 1} channels, not codes of the shape {np.shape(codes)}")
         return self._native.decode(flat, outer[-1]).reshape(outer)
 
     def __repr__(self) -> str:

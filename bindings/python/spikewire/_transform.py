@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from ._scheme import Scheme
+from . import _scheme as _base
 
 
 class ToSpikes:
     """A transform from samples to spikes, as data sets of torchvision and tonic take them.
 
-    `axis` is the one of time: 0 for (time, channels), as tonic and snnTorch lay out data. The spikes are an array
+    `axis` is the one of time: 0 for (time, channels), as tonic and snnTorch lay out data, and the last one or the rows of
+    a table unless given. The spikes are an array
     of `dtype`, or a tensor if the samples are one of torch; that array and tensor share their memory.
 
     >>> import numpy as np, spikewire as sw
@@ -24,16 +24,14 @@ class ToSpikes:
            [ 0,  0]], dtype=int8)
     """
 
-    def __init__(self, scheme: Scheme, axis: int = -1, dtype: Any = np.int8):
-        self.scheme: Scheme = scheme
-        self.axis: int = axis
+    def __init__(self, scheme: _base.Scheme, axis: int | None = None, dtype: Any = np.int8):
+        self.scheme: _base.Scheme = scheme
+        self.axis: int | None = axis
         self.dtype: np.dtype[Any] = np.dtype(dtype)
 
     def __call__(self, x: Any) -> Any:
-        is_tensor = type(x).__module__.partition(".")[0] == "torch"
-        samples = x.detach().cpu().numpy() if is_tensor else x
-        spikes = self.scheme.encode(samples, progress=False, axis=self.axis).array.astype(self.dtype, copy=False)
-        if not is_tensor:
+        spikes = self.scheme.encode(x, progress=False, axis=self.axis).array.astype(self.dtype, copy=False)
+        if not hasattr(x, "detach"):
             return spikes
         import torch
 

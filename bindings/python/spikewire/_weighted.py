@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import outer_of, row, time_axis, unmasked
-
-if TYPE_CHECKING:
-    from ._scheme import Scheme
+from . import _scheme as _base
+from ._arrays import codes_time_last, outer_of, row
+from ._errors import Error
 
 #: Each neuron, or each sub-timestep of a single neuron, stands for a value: the mean of these values by weight.
 MEANS = ("position", "grf", "grf-prob", "grf-nonlinear", "ttfs")
@@ -20,23 +19,34 @@ STEPS = ("tbr", "sf", "mw", "sod")
 FILTERS = ("hsa", "t-hsa", "bsa", "sigma-delta", "if", "bernoulli")
 #: Each sub-timestep is a digit.
 DIGITS = ("weighted-phase",)
+#: What a spike means depends on others: these have no values for weights.
+WITHOUT = (
+    "asf",
+    "atbr",
+    "lif",
+    "burst-weighted",
+    "grf-slots",
+    "grf-nonlinear-slots",
+    "rank-order",
+    "latency-phase",
+    "burst",
+)
 
 #: What is left of a response that fades, in parts of its largest value.
 FADED = 1e-9
 
 
-def decode(scheme: Scheme, weights: ArrayLike, first: ArrayLike | None, axis: int) -> NDArray[np.float64]:
+def decode(scheme: _base.Scheme, weights: ArrayLike, first: ArrayLike | None, axis: int | None) -> NDArray[np.float64]:
     """What :meth:`Scheme.decode_weighted` says."""
     shape = (scheme.neurons, scheme.slots)
     inner = row(shape)
-    weights = unmasked(weights).astype(np.float64)
-    axes = weights.ndim - len(inner)
-    if axes > 0:
-        axis = time_axis(axis, axes)
-        weights = np.moveaxis(weights, axis, axes - 1)
+    weights, axis = codes_time_last(weights, shape, axis)
+    if weights.dtype.kind not in "fiub":
+        raise Error(f"weights are floats or integers, not {weights.dtype}")
+    weights = weights.astype(np.float64)
     outer = outer_of(weights, shape, type(scheme).__name__)
     if not np.isfinite(weights).all():
-        raise ValueError("weights must be finite")
+        raise Error("weights must be finite")
     channels = int(np.prod(outer[:-1]))
     weights = weights.reshape(channels, outer[-1], -1)
     if not weights.size:
@@ -52,14 +62,14 @@ def decode(scheme: Scheme, weights: ArrayLike, first: ArrayLike | None, axis: in
         values = digits(strict, weights)
     else:
         known = ", ".join([*MEANS, *STEPS, *FILTERS, *DIGITS])
-        raise ValueError(f"{scheme.name} has no values for weights: what a spike means depends on others; {known} have")
+        raise Error(f"{scheme.name} has no values for weights: what a spike means depends on others; {known} have")
     return np.moveaxis(values.reshape(outer), -1, axis)
 
 
 class Strict:
     """The decoder of spikes, always from its start."""
 
-    def __init__(self, scheme: Scheme, first: ArrayLike | None, channels: int, inner: tuple[int, ...]):
+    def __init__(self, scheme: _base.Scheme, first: ArrayLike | None, channels: int, inner: tuple[int, ...]):
         self.scheme, self.channels, self.inner = scheme, channels, inner
         self.first = None if first is None else np.broadcast_to(np.ravel(first), (channels,))
 
@@ -73,7 +83,7 @@ class Strict:
 
 def mean(strict: Strict, weights: NDArray[Any]) -> NDArray[Any]:
     if (weights < 0).any():
-        raise ValueError(f"{strict.scheme.name} takes the mean by weights, which must be 0 or more")
+        raise Error(f"{strict.scheme.name} takes the mean by weights, which must be 0 or more")
     cells = weights.shape[2]
     values = strict.decode(np.eye(cells))
     total = weights.sum(axis=2)

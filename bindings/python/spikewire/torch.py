@@ -30,6 +30,8 @@ from torch import Tensor, nn
 from torch.utils.data import Dataset
 
 from . import _native
+from ._arrays import time_axis
+from ._errors import Error, OutOfRange
 from ._network import Network, Reset
 from ._scheme import Scheme
 
@@ -61,6 +63,10 @@ class Encode(nn.Module):
             `split`. A function of the samples gives factors for that sum, such as ``lambda x: 1 / (1 + x.abs()) ** 2``.
 
     Under `torch.compile` it is one opaque operator, `spikewire::encode`; two calls with the same samples may share their draws.
+
+    >>> import spikewire as sw
+    >>> Encode(sw.StepForward(threshold=0.1), time=1, split=True)(torch.zeros(32, 100, 6)).shape
+    torch.Size([100, 32, 12])
     """
 
     def __init__(
@@ -76,11 +82,11 @@ class Encode(nn.Module):
     ):
         super().__init__()
         if num_steps is not None and time != 0:
-            raise ValueError("still samples have no axis of time: num_steps goes without time")
+            raise Error("still samples have no axis of time: num_steps goes without time")
         if not (gradient is None or gradient == "straight" or callable(gradient)):
-            raise ValueError(f"gradient is 'straight', a function of the samples or None, not {gradient!r}")
+            raise Error(f"gradient is 'straight', a function of the samples or None, not {gradient!r}")
         if scheme._info["is_signed"] and not (split or dtype.is_signed):
-            raise ValueError(f"{dtype} has no sign for spikes down: split=True keeps them apart")
+            raise Error(f"{dtype} has no sign for spikes down: split=True keeps them apart")
         self.scheme: Scheme = scheme
         self.num_steps: int | None = num_steps
         self.time: int = time
@@ -102,7 +108,12 @@ class Encode(nn.Module):
         self._register()
 
     def forward(self, x: Tensor) -> Tensor:
-        """Encodes samples: a tensor of floats or integers."""
+        """Encodes samples: a tensor of floats or integers.
+
+        >>> import spikewire as sw
+        >>> Encode(sw.StepForward(threshold=0.5)).forward(torch.tensor([0.0, 1.0, 2.0])).tolist()
+        [[0.0], [1.0], [1.0]]
+        """
         if self.gradient is None or not x.is_floating_point():
             x = x.detach()
         return _encode(x, self._number)
@@ -116,12 +127,13 @@ class Encode(nn.Module):
         """The samples with an axis of time, which still ones share; and that axis."""
         if self.num_steps is not None:
             return x.expand(self.num_steps, *x.shape), 0
-        return x, self.time % x.ndim
+        if x.ndim == 0:
+            raise Error("samples are (time, batch, features), or have their time on another axis, and are not one number")
+        return x, time_axis(self.time, x.ndim)
 
     def _spikes(self, x: Tensor) -> Tensor:
         x, axis = self._with_time(x)
-        values = x.detach().to("cpu", torch.float32 if x.dtype == torch.bfloat16 else None)
-        spikes = self.scheme.encode(values.numpy(), progress=False, axis=axis)
+        spikes = self.scheme.encode(x, progress=False, axis=axis)
         codes = torch.from_numpy(spikes.array).reshape(*x.shape, spikes.slots, spikes.neurons).movedim(axis, 0)
         codes = codes.reshape(x.shape[axis], *self._rest(x, axis), spikes.slots, spikes.neurons).movedim(-2, 1)
         if self.split:
@@ -188,7 +200,7 @@ _Law = tuple[Callable[[Tensor], Tensor], Callable[[Tensor, Any], tuple[Tensor, T
 def _run(x: Tensor, laws: Iterable[_Law]) -> list[tuple[Tensor, Tensor]]:
     """The potentials of each layer, and its spikes: (time, batch, neurons)."""
     if (x < 0).any() or (x.is_floating_point() and (x != x.trunc()).any()):
-        raise ValueError("inputs are counts of spikes; Encode(…, split=True) gives spikes down inputs of their own")
+        raise Error("inputs are counts of spikes; Encode(…, split=True) gives spikes down inputs of their own")
     layers = []
     for arriving, step in laws:
         steps, state = [], None
@@ -220,13 +232,13 @@ class _Chip(nn.Module):
     def __init__(self, inputs: int, sizes: tuple[int, ...], threshold: int, recurrent: bool = False):
         super().__init__()
         if not 0 < threshold <= self._MOST:
-            raise ValueError(f"a threshold is a potential from 1 to {self._MOST}, not {threshold}")
+            raise Error(f"a threshold is a potential from 1 to {self._MOST}, not {threshold}")
         if min(inputs, *sizes, 1) < 1:
-            raise ValueError(f"a layer has 1 neuron or more, not {min(inputs, *sizes)}")
+            raise Error(f"a layer has 1 neuron or more, not {min(inputs, *sizes)}")
         self.threshold = threshold
         firing = sizes if self.readout is None else sizes[:-1]
         if not 1 <= len(firing) <= self._DEPTH:
-            raise ValueError(f"1 to {self._DEPTH} layers fire, not {len(firing)}")
+            raise Error(f"1 to {self._DEPTH} layers fire, not {len(firing)}")
         # Most weights lie in the chip's range, however large the threshold is.
         one = min(threshold / self._unit / 16, self._RANGE[1] / 8)
         shapes = zip((inputs, *sizes), sizes)
@@ -378,18 +390,18 @@ class ReckOn(_Chip):
         readout: float | None = None,
     ):
         if not 0.875**16 <= keep <= 1:
-            raise ValueError(f"a step leaves 0.1181 to 1 of a potential, not {keep}")
+            raise Error(f"a step leaves 0.1181 to 1 of a potential, not {keep}")
         self._ticks = max(math.ceil(math.log(keep, 0.875) - 1e-9), 1)
         if self._ticks > 1 and (recurrent or subtract):
-            raise ValueError(f"recurrent layers, and those that subtract, leave 0.875 to 1 of a potential, not {keep}")
+            raise Error(f"recurrent layers, and those that subtract, leave 0.875 to 1 of a potential, not {keep}")
         units = keep ** (1 / self._ticks) * 32768
         # Several are rounded down: rounded up, `spikewire network` might choose a tick less.
         self._kept = (round(units) if self._ticks == 1 else math.floor(units + 1e-6)) / 32768
         self._read = None if readout is None else self._read_share(readout)
         if readout is not None and len(sizes) < 2:
-            raise ValueError("a last layer that never fires follows another")
+            raise Error("a last layer that never fires follows another")
         if not 0 <= shift <= 7:
-            raise ValueError(f"the chip shifts weights by 0 to 7 bits, not {shift}")
+            raise Error(f"the chip shifts weights by 0 to 7 bits, not {shift}")
         self._unit = 1 << shift
         super().__init__(inputs, sizes, threshold, recurrent)
         # The two neurons of a pair are of the same layer.
@@ -397,7 +409,7 @@ class ReckOn(_Chip):
         neurons = sum(size + size % 2 for size in before) + last
         for name, given, most in (("inputs", inputs, 256), ("neurons that fire", neurons, 256), ("outputs", sizes[-1], 16)):
             if not 1 <= given <= most:
-                raise ValueError(f"the chip has {most} {name}, not {given}")
+                raise Error(f"the chip has {most} {name}, not {given}")
         self.subtract = subtract
 
     @property
@@ -413,13 +425,13 @@ class ReckOn(_Chip):
     def _read_share(self, asked: float) -> float:
         """The share of the outputs' potentials that a tick leaves."""
         if isinstance(asked, bool) or not 0 < asked <= 1:
-            raise ValueError(f"readout is the share of a potential that a step leaves, above 0 up to 1, not {asked}")
+            raise Error(f"readout is the share of a potential that a step leaves, above 0 up to 1, not {asked}")
         units = asked ** (1 / self._ticks) * 128
         share = max(round(units), 1) / 128
         if abs(share**self._ticks - asked) > 0.02 * (1 - asked):
             low = min(max(math.floor(units), 1), 127)
             near = " or ".join(f"{(own / 128) ** self._ticks:.4g}" for own in (low, low + 1))
-            raise ValueError(f"with keep={self.keep:.4g} the chip leaves {near} of the outputs' potentials, not {asked}")
+            raise Error(f"with keep={self.keep:.4g} the chip leaves {near} of the outputs' potentials, not {asked}")
         return share
 
     def _counted(self, x: Tensor) -> Tensor:
@@ -550,10 +562,10 @@ class Controller(nn.Module):
     ):
         super().__init__()
         if reset not in get_args(Reset):
-            raise ValueError(f"reset is one of {', '.join(get_args(Reset))}, not {reset!r}")
+            raise Error(f"reset is one of {', '.join(get_args(Reset))}, not {reset!r}")
         for name, share in (("keep", keep), ("current_keep", current_keep)):
             if share is not None and not 0 <= share <= 1:
-                raise ValueError(f"{name} is a share from 0 to 1, not {share}")
+                raise Error(f"{name} is a share from 0 to 1, not {share}")
         layers = []
         for number, (before, count) in enumerate(zip((inputs, *sizes), sizes), 1):
             fires = not (readout and number == len(sizes))
@@ -570,7 +582,13 @@ class Controller(nn.Module):
 
     @classmethod
     def from_network(cls, network: Network, numbers: Literal["f32", "i8"] = "f32") -> Controller:
-        """The layers of a network, which may have been trained elsewhere."""
+        """The layers of a network, which may have been trained elsewhere.
+
+        >>> import spikewire as sw
+        >>> network = sw.Network.from_toml('[[layers]]\\nname = "one"\\nkeep = [0.5]\\nweights = [[0.6, 0.3]]\\n')
+        >>> Controller.from_network(network)(torch.tensor([[[1.0, 0.0]], [[1.0, 1.0]]])).flatten().tolist()
+        [0.6000000238418579, 1.2000000476837158]
+        """
         own = cls(1)
         own.neurons = nn.ModuleList(_Layer(layer, numbers) for layer in json.loads(network._native.json())["layers"])
         return own
@@ -578,19 +596,31 @@ class Controller(nn.Module):
     def network(self) -> Network:
         """The network as it is now, for the controller: its ``to_rust``, ``to_toml`` and ``to_nir`` write it.
 
-        Raises `ValueError` if a parameter is not finite.
+        Raises `spikewire.Error` if a parameter is not finite.
+
+        >>> Controller(12, 3).network().layers
+        [3]
         """
         for name, own in self.named_parameters():
             if not own.isfinite().all():
-                raise ValueError(f"{name} is not finite: training has diverged")
+                raise Error(f"{name} is not finite: training has diverged")
         return Network(_native.Network.from_json(json.dumps({"layers": [own.written() for own in self.neurons]})))
 
     def layers(self, x: Tensor) -> list[tuple[Tensor, Tensor]]:
-        """The potentials of each layer behind each step, and its spikes: (time, batch, neurons); of `i8` in the layer's integers."""
+        """The potentials of each layer behind each step, and its spikes: (time, batch, neurons); of `i8` in the layer's integers.
+
+        >>> potentials, spikes = Controller(12, 16, 3).layers(torch.ones(5, 4, 12))[0]
+        >>> potentials.shape, spikes.shape
+        (torch.Size([5, 4, 16]), torch.Size([5, 4, 16]))
+        """
         return _run(x, [own.law() for own in self.neurons])
 
     def forward(self, x: Tensor) -> Tensor:
-        """The spikes of the last layer, or its potentials if it never fires."""
+        """The spikes of the last layer, or its potentials if it never fires.
+
+        >>> Controller(12, 3, readout=True).forward(torch.ones(5, 4, 12)).shape
+        torch.Size([5, 4, 3])
+        """
         potentials, fired = self.layers(x)[-1]
         last = self.neurons[-1]
         if "reset" in last.rule:
@@ -726,7 +756,7 @@ class Windows(Dataset[tuple[Tensor, Tensor]]):
         self.samples: Tensor = torch.as_tensor(samples)
         self.labels: Tensor = torch.as_tensor(labels)
         if len(self.samples) != len(self.labels):
-            raise ValueError(f"{len(self.samples)} samples have {len(self.labels)} labels")
+            raise Error(f"{len(self.samples)} samples have {len(self.labels)} labels")
         self.length: int = length
         self.stride: int = stride
 
@@ -735,6 +765,6 @@ class Windows(Dataset[tuple[Tensor, Tensor]]):
 
     def __getitem__(self, place: int) -> tuple[Tensor, Tensor]:
         if not 0 <= place < len(self):
-            raise IndexError(f"window {place} of {len(self)}")
+            raise OutOfRange(f"window {place} of {len(self)}")
         start = place * self.stride
         return self.samples[start : start + self.length], self.labels[start + self.length - 1]

@@ -1,8 +1,10 @@
 //! Samples of `NumPy` arrays as they lie in memory, and decoded values.
 
-use std::{array, ops::Range};
+use std::{array, borrow::Cow, ops};
 
 use catalogue::run::{self, Calibrated, Codec, SampleType};
+use lab::fit::{self, Range};
+use lab::resolution::Resolution;
 use numpy::PyReadonlyArrayDyn;
 use numpy::ndarray::{ArrayView1, ArrayViewD, Axis, Ix1, Ix2, Slice};
 use pyo3::prelude::*;
@@ -53,7 +55,7 @@ impl Lane<'_> {
     }
 
     /// Some of the samples.
-    pub(crate) fn part(&self, range: Range<usize>) -> Lane<'_> {
+    pub(crate) fn part(&self, range: ops::Range<usize>) -> Lane<'_> {
         let part = Slice::from(range);
         match self {
             Self::F32(lane) => Lane::F32(lane.slice_axis(Axis(0), part)),
@@ -108,6 +110,28 @@ impl Lane<'_> {
         }
     }
 
+    /// Says that the type is too coarse for the steps from sample to sample, if it is.
+    fn lost(&self, sample: SampleType) -> Option<String> {
+        let values = match (self, sample) {
+            // A type of 16 bits or more holds what comes in it or in whole numbers of 16 bits, unless it clamps.
+            (Self::I16(_), _) | (Self::F32(_), SampleType::F32) => return None,
+            (Self::F64(lane), _) if lane.as_slice().is_some() => Cow::Borrowed(lane.as_slice()?),
+            _ => Cow::Owned(self.to_vec()),
+        };
+        if is_surely_fine(&values, sample) {
+            return None;
+        }
+        Resolution::of(sample, &values).lost()
+    }
+
+    /// Whether all samples are numbers within bounds.
+    pub(crate) fn lies_in(&self, bounds: &Bounds) -> bool {
+        match self.in_memory() {
+            Some(samples) => lies_in(samples, bounds),
+            None => lies_in(run::Samples::F64(&self.to_vec()), bounds),
+        }
+    }
+
     /// The first sample that an encoder of this type does not take: it is not finite, or becomes so in the type.
     pub(crate) fn bad(&self, sample: SampleType) -> Option<Bad> {
         match self {
@@ -148,7 +172,7 @@ pub(crate) struct Grid<'a> {
 
 impl<'a> Grid<'a> {
     /// Returns the first samples of these channels, up to `count` of each.
-    pub(crate) fn firsts(&self, channels: Range<usize>, count: usize) -> Vec<f64> {
+    pub(crate) fn firsts(&self, channels: ops::Range<usize>, count: usize) -> Vec<f64> {
         match self.all {
             run::Samples::F32(all) => self.firsts_of(all, channels, count),
             run::Samples::F64(all) => self.firsts_of(all, channels, count),
@@ -159,7 +183,7 @@ impl<'a> Grid<'a> {
     fn firsts_of<T: Copy + Into<f64>>(
         &self,
         all: &[T],
-        channels: Range<usize>,
+        channels: ops::Range<usize>,
         count: usize,
     ) -> Vec<f64> {
         let times = 0..count.min(self.length);
@@ -177,7 +201,7 @@ impl<'a> Grid<'a> {
     /// Returns the samples of these channels, one channel after the other: where they are, or copied to the tile.
     pub(crate) fn channels<'b>(
         &self,
-        channels: Range<usize>,
+        channels: ops::Range<usize>,
         tile: &'b mut Tile,
     ) -> run::Samples<'b>
     where
@@ -198,7 +222,7 @@ impl<'a> Grid<'a> {
     fn copied<'b, T: Copy + Default>(
         &self,
         all: &[T],
-        channels: Range<usize>,
+        channels: ops::Range<usize>,
         tile: &'b mut Vec<T>,
     ) -> &'b [T] {
         tile.resize(channels.len() * self.length, T::default());
@@ -293,6 +317,96 @@ fn first_bad<T>(samples: &[T], narrow: impl Fn(&T) -> f32) -> Option<usize> {
     Some(start + samples[start..].iter().position(|own| !narrow(own).is_finite())?)
 }
 
+/// Returns whether the type is certain to be fine enough for the steps from sample to sample, by a bound that costs less
+/// than a look at each step, and that most signals keep.
+fn is_surely_fine(samples: &[f64], sample: SampleType) -> bool {
+    /// Largest error, as a share of all steps, that is harmless for certain: half of what counts as a loss.
+    const SURE: f64 = 0.05;
+    const BLOCK: usize = 4096;
+    let (mut moved, mut off, mut start) = (0.0, 0.0, 0);
+    while start + 1 < samples.len() {
+        let end = samples.len().min(start + BLOCK);
+        // With the last sample of the block before, from which its first step starts.
+        let block = &samples[start..end];
+        let steps = sum_of_steps(block);
+        // No sample is larger than the first one and all steps. Rounding changes a step by one spacing at most.
+        let spacing = match sample.step() {
+            0.0 => (block[0].abs() + steps) * f64::from(f32::EPSILON),
+            step => step,
+        };
+        (moved, off) = (moved + steps, off + spacing * block.len() as f64);
+        start = end - 1;
+    }
+    off <= SURE * moved
+}
+
+/// Returns the sum of the sizes of all steps from sample to sample, of which there is one at least.
+fn sum_of_steps(samples: &[f64]) -> f64 {
+    /// Number of sums side by side, which the processor adds at once. The order of a single one would be fixed.
+    const SIDE: usize = 8;
+    let later = samples.get(1..).unwrap_or_default();
+    let (before, _) = samples[..later.len()].as_chunks::<SIDE>();
+    let (after, rest) = later.as_chunks::<SIDE>();
+    let mut sums = [0.0; SIDE];
+    for (before, after) in before.iter().zip(after) {
+        for ((sum, before), after) in sums.iter_mut().zip(before).zip(after) {
+            *sum += (after - before).abs();
+        }
+    }
+    let rest = &samples[samples.len() - rest.len() - 1..];
+    let last: f64 = rest.windows(2).map(|step| (step[1] - step[0]).abs()).sum();
+    sums.iter().sum::<f64>() + last
+}
+
+/// The range of a code as samples are compared with it before the sample type has rounded them.
+#[derive(Clone, Copy)]
+pub(crate) struct Bounds {
+    low: f64,
+    high: f64,
+    is_single: bool,
+}
+
+impl Bounds {
+    /// Returns the bounds of samples that lie within `min` to `max` once they are rounded, as these are.
+    pub(crate) fn new(sample: SampleType, min: f64, max: f64) -> Self {
+        // A sample that is half a step too large is rounded up, and one that is half a step too small, too.
+        let half = sample.step() / 2.0;
+        let high = if half > 0.0 { (max + half).next_down() } else { max };
+        Self { low: min - half, high, is_single: sample == SampleType::F32 }
+    }
+}
+
+/// Returns whether all samples are numbers within bounds. Doubles are compared as the `f32` that they become, so that ends
+/// which are no `f32` are compared with what they became, too.
+pub(crate) fn lies_in(samples: run::Samples, bounds: &Bounds) -> bool {
+    let Bounds { low, high, is_single } = *bounds;
+    if !is_single {
+        return match samples {
+            run::Samples::F32(all) => are_within(all, |own| f64::from(*own), low, high),
+            run::Samples::F64(all) => are_within(all, |own| *own, low, high),
+            run::Samples::I16(all) => are_within(all, |own| f64::from(*own), low, high),
+        };
+    }
+    let (low, high) = (low as f32, high as f32);
+    match samples {
+        run::Samples::F32(all) => are_within(all, |own| *own, low, high),
+        run::Samples::F64(all) => are_within(all, |own| *own as f32, low, high),
+        run::Samples::I16(all) => are_within(all, |own| f32::from(*own), low, high),
+    }
+}
+
+/// Looks at blocks, without a branch for each sample. What is no number compares as false, and lies outside.
+fn are_within<T, N: Copy + PartialOrd>(
+    samples: &[T],
+    narrow: impl Fn(&T) -> N,
+    low: N,
+    high: N,
+) -> bool {
+    const BLOCK: usize = 512;
+    let is_within = |own: &T| u32::from(narrow(own) >= low) & u32::from(narrow(own) <= high);
+    samples.chunks(BLOCK).all(|block| block.iter().fold(1, |all, own| all & is_within(own)) == 1)
+}
+
 /// Returns whether an encoder of this type takes all of the samples.
 pub(crate) fn are_good(samples: run::Samples, sample: SampleType) -> bool {
     match samples {
@@ -370,16 +484,54 @@ impl<'a> View<'a> {
     }
 }
 
-/// Says how many samples were cut to the range of the sample type, if any. Fixed point cuts; beyond `f32` is an error.
+/// Says what the sample type does to the samples, a sentence each: that it clamps some, or is too coarse for their steps.
 #[pyfunction]
-pub(crate) fn cut(py: Python, sample: &str, samples: Samples) -> PyResult<Option<String>> {
+pub(crate) fn remarks(py: Python, sample: &str, samples: Samples) -> PyResult<Vec<String>> {
     let sample: SampleType = sample.parse().map_err(value)?;
-    if sample == SampleType::F32 {
-        return Ok(None);
-    }
     let lanes = samples.view().lanes();
-    let count: usize = py.detach(|| lanes.iter().map(|lane| lane.beyond(sample)).sum());
-    Ok(lab::fit::cut(sample, count as u64))
+    Ok(py.detach(|| {
+        let mut remarks = Vec::new();
+        if sample != SampleType::F32 {
+            let count: usize = lanes.iter().map(|lane| lane.beyond(sample)).sum();
+            remarks.extend(fit::cut(sample, count as u64));
+        }
+        for (place, lane) in lanes.iter().enumerate() {
+            if let Some(lost) = lane.lost(sample) {
+                let channel =
+                    if lanes.len() > 1 { format!("channel {place}: ") } else { String::new() };
+                remarks.push(channel + &lost);
+                break; // other channels of one sensor lose the same
+            }
+        }
+        remarks
+    }))
+}
+
+/// Says which share of the samples lies outside the range of their code, if any does. A range for all channels, or one for
+/// each, is its two ends.
+#[pyfunction]
+pub(crate) fn outside(
+    py: Python,
+    sample: &str,
+    ranges: Vec<[f64; 2]>,
+    samples: Samples,
+) -> PyResult<Option<String>> {
+    let sample: SampleType = sample.parse().map_err(value)?;
+    let lanes = samples.view().lanes();
+    Ok(py.detach(|| {
+        let (mut count, mut total, mut odd) = (0, 0, None);
+        for (lane, [min, max]) in lanes.iter().zip(ranges.iter().cycle()) {
+            total += lane.len() as u64;
+            let range = Range::new(sample, *min, *max);
+            if !lane.lies_in(&Bounds::new(sample, *min, *max)) {
+                let is_outside = |value: &&f64| !range.holds(**value);
+                let outside = lane.to_vec().iter().filter(is_outside).count() as u64;
+                count += outside;
+                odd = odd.or((outside > 0).then_some(range));
+            }
+        }
+        odd.and_then(|range| range.outside(count, total))
+    }))
 }
 
 /// The rows along the last axis.

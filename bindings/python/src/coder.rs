@@ -1,20 +1,20 @@
 //! A scheme with what was given of its parameters, and with all of them.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result, anyhow, bail};
 use catalogue::run::{
-    Asked, Calibrated, Codec, Known, RunTime, SampleType, Settings, Values, missing,
+    Asked, Calibrated, Codec, Known, RunTime, SampleType, Settings, Value, Values, missing,
 };
 use lab::tune::costs::Costs;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::array::{Grid, Lane, RUN, Samples, Tile, View, are_good};
+use crate::array::{Bounds, Grid, Lane, RUN, Samples, Tile, View, are_good, lies_in};
 use crate::channel::{self, Bad};
-use crate::error::value;
+use crate::error::{Error, value};
 use crate::stream::{Decoder, Encoder};
 use crate::values::{self, Given};
 use crate::work::{self, Meter};
@@ -237,6 +237,23 @@ impl Coder {
         work::detached(py, is_wide, fitted)?.map_err(value)
     }
 
+    /// The range that was given of a code, for all channels or for each; none of a code without one. An end that was not
+    /// given is the signal's, which no sample passes.
+    fn ranges(&self) -> PyResult<Vec<[f64; 2]>> {
+        let info = self.scheme.info();
+        let count = self.asked.channels(info).map_err(value)?.unwrap_or(1);
+        let mut ranges = Vec::new();
+        for channel in 0..count {
+            let own = self.channel(channel, count).map_err(value)?.asked;
+            let end = |name| own.get(name).and_then(Value::number);
+            let ends = [end("min"), end("max")];
+            if ends != [None, None] {
+                ranges.push([ends[0].unwrap_or(f64::MIN), ends[1].unwrap_or(f64::MAX)]);
+            }
+        }
+        Ok(ranges)
+    }
+
     /// It with draws that start from this seed.
     fn seeded(&self, seed: u64) -> Self {
         let mut own = self.clone();
@@ -291,6 +308,8 @@ pub(crate) struct Fitted {
     count: usize,
     /// Whether a codec of one channel can start anew as that of another: they have the same settings, and draw nothing.
     serves_all: bool,
+    /// The ranges of `channels`; none of a code without a range.
+    bounds: Vec<Bounds>,
 }
 
 /// The first samples of each channel, from which its encoder starts.
@@ -316,7 +335,17 @@ impl Fitted {
         count: usize,
     ) -> Self {
         let serves_all = matches!(&*channels, [own] if own.get("seed").is_none());
-        Self { scheme, sample, channels, begins, count, serves_all }
+        let mut bounds = Vec::new();
+        for own in &channels {
+            if let (Ok(min), Ok(max)) = (own.number("min"), own.number("max")) {
+                bounds.push(Bounds::new(sample, min, max));
+            }
+        }
+        Self { scheme, sample, channels, begins, count, serves_all, bounds }
+    }
+
+    fn bounds(&self, channel: usize) -> Option<&Bounds> {
+        self.bounds.get(channel).or(self.bounds.first())
     }
 
     fn common(&self, channel: usize) -> Result<&Settings> {
@@ -372,7 +401,7 @@ fn texts(settings: &Settings) -> Vec<(&'static str, String)> {
 /// The scheme of a short name.
 fn named(name: &str) -> PyResult<&'static dyn RunTime> {
     let named = catalogue::ALL.iter().find(|own| own.info().name == name);
-    let unknown = || PyValueError::new_err(format!("there is no scheme {name:?}"));
+    let unknown = || Error::new_err(format!("there is no scheme {name:?}"));
     named.copied().ok_or_else(unknown)
 }
 
@@ -413,13 +442,14 @@ impl Fitted {
         Ok(values::keywords(&settings.to_asked(self.scheme.info())))
     }
 
-    /// The cells of all samples, and of those that wait for later ones at the end.
+    /// The cells of all samples, and of those that wait for later ones at the end; and whether some samples lie outside
+    /// the code's range.
     fn encode<'py>(
         &self,
         py: Python<'py>,
         samples: Samples,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyArray1<i8>>> {
+    ) -> PyResult<(Bound<'py, PyArray1<i8>>, bool)> {
         let samples = samples.view();
         let (count, length) = (samples.count(), samples.length());
         let width = self.width().map_err(value)?;
@@ -436,15 +466,17 @@ impl Fitted {
         // Every thread has a share.
         let most = count.div_ceil(threads).max(1);
         let run = if grid.is_some() { run_of(length * width).min(most) } else { 1 };
+        let is_outside = AtomicBool::new(false);
         let done = work::run(py, is_wide, total, progress.as_ref(), |meter| {
+            let watch = &Watch { meter, is_outside: &is_outside };
             let encode = |bench: &mut Bench, (place, room): (usize, &mut [i8])| {
                 let from = place * run;
                 match &grid {
                     Some(grid) => {
                         let channels = from..count.min(from + run);
-                        self.encode_grid(bench, grid, channels, length, room, meter)
+                        self.encode_grid(bench, grid, channels, length, room, watch)
                     }
-                    None => self.encode_lane(bench, &lanes[from], from, room, meter),
+                    None => self.encode_lane(bench, &lanes[from], from, room, watch),
                 }
             };
             let size = (run * length * width).max(1);
@@ -462,7 +494,7 @@ impl Fitted {
             value(bad.map_or(error, |(channel, bad)| told(channel, 0, &bad)))
         })?;
         drop(access);
-        Ok(output)
+        Ok((output, is_outside.into_inner()))
     }
 
     /// The values of rows of cells, of this many channels.
@@ -559,9 +591,9 @@ impl Fitted {
         channels: Range<usize>,
         length: usize,
         room: &mut [i8],
-        meter: &Meter,
+        watch: &Watch,
     ) -> Result<()> {
-        if meter.is_stopped() {
+        if watch.meter.is_stopped() {
             return Ok(());
         }
         let codec = match &mut bench.codec {
@@ -570,11 +602,16 @@ impl Fitted {
         };
         let (first, count) = (channels.start as u64, channels.len());
         let samples = grid.channels(channels, &mut bench.tile);
-        if !are_good(samples, self.sample) {
+        // They share their settings. What lies in the range of their code is good without a look at each sample.
+        let is_inside = self.bounds(0).map(|bounds| lies_in(samples, bounds));
+        if is_inside != Some(true) && !are_good(samples, self.sample) {
             bail!(BAD);
         }
+        if is_inside == Some(false) {
+            watch.is_outside.store(true, Ordering::Relaxed);
+        }
         codec.encode_channels(samples, length, first, room);
-        meter.add(count * length);
+        watch.meter.add(count * length);
         Ok(())
     }
 
@@ -585,7 +622,7 @@ impl Fitted {
         lane: &Lane,
         channel: usize,
         room: &mut [i8],
-        meter: &Meter,
+        watch: &Watch,
     ) -> Result<()> {
         let width = self.width()?;
         let started = self.start_on(bench.codec.take(), channel);
@@ -593,19 +630,30 @@ impl Fitted {
         let codec = bench.codec.insert(started);
         let mut made = 0;
         for start in (0..lane.len()).step_by(PIECE) {
-            if meter.is_stopped() {
+            if watch.meter.is_stopped() {
                 return Ok(());
             }
             let part = lane.part(start..lane.len().min(start + PIECE));
-            if part.bad(self.sample).is_some() {
+            let is_inside = self.bounds(channel).map(|bounds| part.lies_in(bounds));
+            if is_inside != Some(true) && part.bad(self.sample).is_some() {
                 bail!(BAD);
             }
+            if is_inside == Some(false) {
+                watch.is_outside.store(true, Ordering::Relaxed);
+            }
             made += part.encode(codec, &mut room[made * width..]);
-            meter.add(part.len());
+            watch.meter.add(part.len());
         }
         codec.finish_cells(&mut room[made * width..]);
         Ok(())
     }
+}
+
+/// What threads say of their work.
+struct Watch<'a> {
+    meter: &'a Meter,
+    /// Whether some sample lies outside the code's range.
+    is_outside: &'a AtomicBool,
 }
 
 /// The codec and the room for copies that a thread uses for one channel after the other.

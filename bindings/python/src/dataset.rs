@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use anyhow::{Result, bail};
 use lab::dataset::{Code, Flights, Request, Run};
 use lab::flight::Flight;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::coder::Coder;
-use crate::error::value;
+use crate::error::{Error, value};
 use crate::library::Input;
 
 /// Keywords of `dataset`, which a task carries to another process.
@@ -73,7 +72,7 @@ impl Dataset {
 
     /// Completes the manifest, and returns the counts as JSON.
     fn finish(&mut self) -> PyResult<String> {
-        let run = self.0.take().ok_or_else(|| PyValueError::new_err("it is finished already"))?;
+        let run = self.0.take().ok_or_else(|| Error::new_err("it is finished already"))?;
         let (outcome, _) = run.finish().map_err(value)?;
         serde_json::to_string(&outcome).map_err(value)
     }

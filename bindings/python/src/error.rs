@@ -29,6 +29,15 @@ pub(crate) fn value(error: impl Into<anyhow::Error>) -> PyErr {
     set.err().unwrap_or(exception)
 }
 
+/// The exception of a call that must wait for another one, which Python's half declares with two bases.
+pub(crate) fn busy(words: String) -> PyErr {
+    let error = Python::attach(|py| {
+        let kind = py.import("spikewire._errors")?.getattr("Busy")?;
+        Ok(PyErr::from_value(kind.call1((words,))?))
+    });
+    error.unwrap_or_else(|error| error)
+}
+
 /// The attributes of an exception, for a program to act on.
 #[derive(Default)]
 struct Attributes<'a> {

@@ -3,11 +3,13 @@
 use anyhow::{Result, bail};
 use catalogue::for_sample_type;
 use catalogue::run::SampleType;
-use numpy::{PyArray1, PyReadonlyArray1};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use spikewire::filter::{Biquad, BiquadState, Filter as _, FirstOrder, FirstOrderState};
 use spikewire::{Fingerprint, Sample};
 
+use crate::array::{Lane, Samples};
+use crate::coder::told;
 use crate::error::value;
 
 /// Filters in a row, by their corners.
@@ -50,25 +52,38 @@ impl Filter {
         self.build::<f32>().map(|chain| chain.delay()).map_err(value)
     }
 
-    /// Filters samples in a sample type.
+    /// Filters samples in a sample type, each channel by itself: one channel after the other.
     fn filter<'py>(
         &self,
         py: Python<'py>,
-        samples: PyReadonlyArray1<'py, f64>,
+        samples: Samples,
         sample: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let sample: SampleType = sample.parse().map_err(value)?;
-        let samples = samples.as_array();
-        let filtered: Result<Vec<f64>> = for_sample_type!(sample, S => self.build::<S>().map(|mut chain| {
-            let one = sample.one();
-            let next = |&x: &f64| chain.next(S::from_f64(x * one)).to_f64() / one;
-            samples.iter().map(next).collect()
-        }));
+        let samples = samples.view();
+        if let Some((channel, bad)) = samples.bad(sample) {
+            return Err(value(told(channel, 0, &bad)));
+        }
+        let lanes = samples.lanes();
+        let filtered =
+            py.detach(|| for_sample_type!(sample, S => self.filtered::<S>(&lanes, sample.one())));
         Ok(PyArray1::from_vec(py, filtered.map_err(value)?))
     }
 }
 
 impl Filter {
+    /// Filters channels in units of the sample type, which has `one` of them for 1.
+    fn filtered<S: Sample>(&self, lanes: &[Lane], one: f64) -> Result<Vec<f64>> {
+        let mut filtered = Vec::new();
+        for lane in lanes {
+            let mut chain = self.build::<S>()?;
+            for value in lane.to_vec() {
+                filtered.push(chain.next(S::from_f64(value * one)).to_f64() / one);
+            }
+        }
+        Ok(filtered)
+    }
+
     fn checked(stage: Stage) -> PyResult<Self> {
         let own = Self(vec![stage]);
         own.build::<f32>().map_err(value)?;

@@ -1,9 +1,9 @@
 //! A flight's file.
 
 use lab::flight::{Channel, Filter, Flight};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::error::value;
 use crate::values::{Given, keywords};
 
 /// A channel: name, source, unit, counts a unit, keywords of its scheme.
@@ -20,7 +20,7 @@ type FlightFields =
 /// Reads a flight's file.
 #[pyfunction]
 pub(crate) fn flight(path: &str) -> PyResult<FlightFields> {
-    let flight = Flight::read(path).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let flight = Flight::read(path).map_err(value)?;
     let filter = flight.filter.map(|own| match own {
         Filter::FirstOrder { corner } => ("first_order", corner, None),
         Filter::LowPass { corner } => ("low_pass", corner, None),

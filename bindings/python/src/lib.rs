@@ -23,7 +23,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::array::cut;
+    use super::array::{outside, remarks};
     #[pymodule_export]
     use super::coder::{Coder, Fitted};
     #[pymodule_export]
@@ -40,7 +40,8 @@ mod _native {
     use super::info::schemes;
     #[pymodule_export]
     use super::library::{
-        advise, plot, read, read_events, score, to_c, to_rust, to_toml, tune, write_events,
+        advise, from_toml, plot, read, read_events, score, to_c, to_rust, to_toml, tune,
+        write_events,
     };
     #[pymodule_export]
     use super::link::{Hearer, Sender};
@@ -52,6 +53,11 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // An error that Python's half raises has no attributes of its own.
+        let error = module.getattr("Error")?;
+        for name in ["parameter", "value", "file", "kind", "remedy"] {
+            error.setattr(name, module.py().None())?;
+        }
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -9,6 +9,7 @@ use anyhow::{Result, anyhow, bail};
 use lab::advise::AdviseRequest;
 use lab::coding::Coding;
 use lab::emit::Codec;
+use lab::events::PixelEvent;
 use lab::input::{ChannelOptions, InputOptions, TableKind};
 use lab::plot::Picture;
 use lab::scheme::Scheme;
@@ -18,13 +19,12 @@ use lab::tune::report::Row;
 use lab::tune::{Goal, Limits, Over, TuneRequest};
 use lab::watch::{Progress, Watch};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use spikewire::{Event, Polarity, Tick};
 
 use crate::coder::Coder;
-use crate::error::value;
+use crate::error::{Error, value};
 use crate::values::{self, Given as Keyword, keywords};
 use crate::work;
 use catalogue::run::Given;
@@ -43,7 +43,7 @@ fn tuned_fields(scheme: Scheme, row: &Row, channel: &str) -> Result<TunedFields>
 /// A signal as the library has recordings.
 fn recording(name: &str, values: &PyReadonlyArray1<f64>, rate: Option<f64>) -> PyResult<Recording> {
     let values = values.as_array().to_vec();
-    let refused = |text: String| Err(PyValueError::new_err(text));
+    let refused = |text: String| Err(Error::new_err(text));
     if values.is_empty() {
         return refused(format!("{name}: there is no sample"));
     }
@@ -115,7 +115,7 @@ pub(crate) fn plot<'py>(
     if shown.start + 1 >= shown.end || shown.end > samples {
         let Range { start, end } = shown;
         let text = format!("samples {start}..{end}: two samples at least, within 0..{samples}");
-        return Err(PyValueError::new_err(text));
+        return Err(Error::new_err(text));
     }
     let drawn = || -> Result<_> {
         let trials = coders.iter().map(|coder| coder.trial(&recording));
@@ -242,7 +242,7 @@ impl Advise {
         let request = AdviseRequest::new(recordings);
         Ok(AdviseRequest {
             sample: self.sample.parse()?,
-            max_rmse: self.max_rmse,
+            max_rmse: self.max_rmse.into_iter().collect(),
             max_latency: self.max_latency,
             loop_bandwidth: self.loop_bandwidth,
             frame_loss: self.frame_loss.unwrap_or(request.frame_loss),
@@ -299,6 +299,16 @@ pub(crate) fn to_c(
 #[pyfunction]
 pub(crate) fn to_toml(coder: &Coder, comments: Vec<String>) -> PyResult<String> {
     lab::emit::toml(&coder.coding(), &comments).map_err(value)
+}
+
+/// A scheme out of a file of parameters: its name, its sample type and its keywords.
+type Parsed = (&'static str, String, Vec<(&'static str, Keyword)>);
+
+/// Reads a file of parameters, which `to_toml` or `spikewire tune --emit toml` wrote. Errors name it as `file`.
+#[pyfunction]
+pub(crate) fn from_toml(file: &str, text: &str) -> PyResult<Parsed> {
+    let Coding { scheme, sample, asked } = Coding::parse(file, text).map_err(value)?;
+    Ok((scheme.name(), sample.to_string(), keywords(&asked)))
 }
 
 /// Channels of a file: names, samples, times in µs, notes.
@@ -376,9 +386,14 @@ pub(crate) fn read<'py>(py: Python<'py>, path: &str, keywords: Input) -> PyResul
     Ok((names, columns, all.times.into_pyarray(py), notes))
 }
 
-/// Times in µs, addresses, polarities, notes.
-type Events<'py> =
-    (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u16>>, Bound<'py, PyArray1<bool>>, Vec<String>);
+/// Times in µs, addresses or columns, rows if there are columns, polarities, notes.
+type Events<'py> = (
+    Bound<'py, PyArray1<u32>>,
+    Bound<'py, PyArray1<u16>>,
+    Option<Bound<'py, PyArray1<u16>>>,
+    Bound<'py, PyArray1<bool>>,
+    Vec<String>,
+);
 
 /// The events in bytes of a format.
 #[pyfunction]
@@ -388,11 +403,21 @@ pub(crate) fn read_events<'py>(
     format: &str,
 ) -> PyResult<Events<'py>> {
     let read = py.detach(|| lab::events::read_events(bytes, format)).map_err(value)?;
-    let ticks: Vec<u32> = read.events.iter().map(|event| event.tick.micros()).collect();
-    let addresses: Vec<u16> = read.events.iter().map(|event| event.address).collect();
-    let are_up: Vec<bool> =
-        read.events.iter().map(|event| event.polarity == Polarity::Up).collect();
-    Ok((ticks.into_pyarray(py), addresses.into_pyarray(py), are_up.into_pyarray(py), read.notes))
+    let (mut ticks, mut places, mut rows, mut are_up) = (vec![], vec![], vec![], vec![]);
+    for event in read.events {
+        ticks.push(event.tick.micros());
+        places.push(event.address);
+        are_up.push(event.polarity == Polarity::Up);
+    }
+    for event in read.pixels {
+        ticks.push(event.tick.micros());
+        places.push(event.x);
+        rows.push(event.y);
+        are_up.push(event.polarity == Polarity::Up);
+    }
+    let rows = (!rows.is_empty()).then(|| rows.into_pyarray(py));
+    let (ticks, places) = (ticks.into_pyarray(py), places.into_pyarray(py));
+    Ok((ticks, places, rows, are_up.into_pyarray(py), read.notes))
 }
 
 /// Events as bytes of a format, and what it could not hold.
@@ -400,20 +425,31 @@ pub(crate) fn read_events<'py>(
 pub(crate) fn write_events<'py>(
     py: Python<'py>,
     ticks: PyReadonlyArray1<u32>,
-    addresses: PyReadonlyArray1<u16>,
+    places: PyReadonlyArray1<u16>,
+    rows: Option<PyReadonlyArray1<u16>>,
     are_up: PyReadonlyArray1<bool>,
     format: &str,
 ) -> PyResult<(Bound<'py, PyBytes>, Vec<String>)> {
-    let (ticks, addresses) = (ticks.as_array(), addresses.as_array());
-    let fields = ticks.iter().zip(addresses).zip(are_up.as_array());
+    let (ticks, places) = (ticks.as_array(), places.as_array());
+    let fields = ticks.iter().zip(places).zip(are_up.as_array());
     let events: Vec<Event> = fields
-        .map(|((tick, address), is_up)| Event {
+        .map(|((tick, place), is_up)| Event {
             tick: Tick::from(*tick),
-            address: *address,
+            address: *place,
             polarity: if *is_up { Polarity::Up } else { Polarity::Down },
         })
         .collect();
-    let written = py.detach(|| lab::events::write_events(&events, format));
+    let written = match rows {
+        None => py.detach(|| lab::events::write_events(&events, format)),
+        Some(rows) => {
+            let pixel = |(event, y): (&Event, &u16)| {
+                let Event { tick, address: x, polarity } = *event;
+                PixelEvent { tick, x, y: *y, polarity }
+            };
+            let pixels: Vec<PixelEvent> = events.iter().zip(rows.as_array()).map(pixel).collect();
+            py.detach(|| lab::events::write_pixels(&pixels, format))
+        }
+    };
     let (bytes, notes) = written.map_err(value)?;
     Ok((PyBytes::new(py, &bytes), notes))
 }

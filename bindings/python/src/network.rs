@@ -2,15 +2,16 @@
 
 use std::path::PathBuf;
 
+use anyhow::anyhow;
 use lab::network::{
-    Asked, ControllerRequest, File, Flown, Model, OnChip, Remarks, Trains, bring_to_controller,
+    Asked, ControllerRequest, File, Flown, Model, OnChip, Remarks, State, Trains,
+    bring_to_controller,
 };
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
 
-use crate::error::value;
+use crate::error::{Error, value};
 
 /// The choice of this name.
 fn choice<T: DeserializeOwned>(keyword: &str, asked: &str) -> PyResult<T> {
@@ -18,7 +19,7 @@ fn choice<T: DeserializeOwned>(keyword: &str, asked: &str) -> PyResult<T> {
     choice.map_err(|error: serde_json::Error| {
         let words = error.to_string();
         let choices = words.split_once("expected ").map_or(&*words, |(_, choices)| choices);
-        PyValueError::new_err(format!("{keyword} {asked:?} must be {choices}"))
+        Error::new_err(format!("{keyword} {asked:?} must be {choices}"))
     })
 }
 
@@ -37,6 +38,9 @@ impl From<Model> for Network {
 
 /// Spikes and potentials, a row for each step.
 type Rows<'py> = (Bound<'py, PyArray2<bool>>, Bound<'py, PyArray2<f32>>);
+
+/// A layer between two steps: potentials, currents, and the neurons that fired in the last one.
+type Layer = (Vec<f32>, Vec<f32>, Vec<u16>);
 
 /// Neurons that fire and potentials, by step.
 type Held<'py> = (Trains, Bound<'py, PyArray2<f64>>);
@@ -111,6 +115,25 @@ impl Network {
         self.flown.reset();
     }
 
+    /// The state of each layer.
+    fn state(&self) -> Vec<Layer> {
+        let states = self.flown.state().iter().cloned();
+        states.map(|own| (own.potentials, own.currents, own.fired)).collect()
+    }
+
+    /// Goes on from a state of the same network.
+    fn set_state(&mut self, state: Vec<Layer>) -> PyResult<()> {
+        let mut states = Vec::new();
+        for (potentials, currents, fired) in state {
+            states.push(State { potentials, currents, fired });
+        }
+        if self.flown.set_state(states) {
+            Ok(())
+        } else {
+            Err(value(anyhow!("the state is another network's")))
+        }
+    }
+
     fn potentials<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         PyArray1::from_slice(py, self.flown.potentials())
     }
@@ -154,7 +177,7 @@ impl Network {
         asked: impl FnOnce(&dyn OnChip) -> lab::Result<T> + Send,
     ) -> PyResult<T> {
         if steps.is_empty() {
-            return Err(PyValueError::new_err("no steps"));
+            return Err(Error::new_err("no steps"));
         }
         for step in steps {
             self.check(step)?;
@@ -170,7 +193,7 @@ impl Network {
         let count = self.flown.inputs();
         match inputs.iter().find(|input| usize::from(**input) >= count) {
             None => Ok(()),
-            Some(odd) => Err(PyValueError::new_err(format!(
+            Some(odd) => Err(Error::new_err(format!(
                 "input {odd}: the network has inputs 0 to {}",
                 count - 1
             ))),

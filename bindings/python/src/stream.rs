@@ -5,14 +5,13 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 use anyhow::{Context, Result, ensure};
 use catalogue::run::{Codec, SampleType, Values};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::array::{Lane, Samples};
 use crate::channel;
 use crate::coder::{Coder, told};
-use crate::error::value;
+use crate::error::{Error, busy, value};
 use crate::work;
 
 /// What a stream pickles as: the package's version, the samples that wait for the encoder to start, and the states of the
@@ -39,7 +38,7 @@ fn taken<'a, T>(state: &'a Mutex<T>, what: &str) -> PyResult<MutexGuard<'a, T>> 
     match state.try_lock() {
         Ok(guard) => Ok(guard),
         Err(TryLockError::Poisoned(error)) => Ok(error.into_inner()),
-        Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(format!(
+        Err(TryLockError::WouldBlock) => Err(busy(format!(
             "this {what} is at work in another thread; chunks go through one after the other, and threads take an \
              {what} each"
         ))),
@@ -177,7 +176,7 @@ impl Encoder {
         let mut own = self.taken()?;
         let own = &mut *own;
         if lanes.len() != own.waiting.len() {
-            return Err(PyValueError::new_err(format!(
+            return Err(Error::new_err(format!(
                 "there are {} channels, not {}",
                 own.waiting.len(),
                 lanes.len()

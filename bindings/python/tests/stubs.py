@@ -4,21 +4,21 @@ import spikewire as sw
 
 HEAD = '''"""The classes of the schemes. Generated from the catalogue; a test says how when it has changed."""
 
-from collections.abc import Sequence
 from typing import Literal
 
 from numpy.random import Generator
 
+from ._arrays import Number, Numbers, Whole
 from ._scheme import Scheme
 
 '''
 
 TYPES = {
-    "number": "float",
-    "count": "int",
+    "number": "Number",
+    "count": "Whole",
     "flag": "bool",
-    "text": "str | float | Sequence[float]",
-    "filter": "str | Sequence[float]",
+    "text": "str | Number | Numbers",
+    "filter": "str | Numbers",
 }
 
 
@@ -26,9 +26,9 @@ def argument(own):
     words = ", ".join(f'"{word}"' for word in own["words"])
     kind = f"Literal[{words}]" if words else TYPES[own["kind"]]
     if own["name"] == "seed":
-        kind = "int | Generator"
+        kind = "Whole | Generator"
     elif own["kind"] == "number":
-        kind = "float | Sequence[float]"
+        kind = "Number | Numbers"
     return f"        {own['name']}: {kind} | None = None,"
 
 

@@ -1,7 +1,9 @@
 """What the laptop program does, in Python: of the same code, so it is the arrays that are tested here."""
 
 import json
+import os
 import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -66,6 +68,7 @@ def test_what_is_tuned_keeps_to_its_goal(log):
     assert sw.score(log.x[0], tuned.scheme)["rmse"] <= 0.3
     assert tuned.to_rust("ROLL").splitlines()[-1].startswith("pub static ROLL: spikewire::temporal::StepForward<f32>")
     assert 'scheme = "sf"' in tuned.to_toml()
+    assert sw.Scheme.from_toml(tuned.to_toml()) == tuned.scheme
     kept = sw.tune(log.x[0], sw.SendOnDelta, spikes=3, min_efficiency=50, evaluations=40)
     assert kept.scheme.parameters["spikes"] == 3
     for keywords, words in [
@@ -76,6 +79,34 @@ def test_what_is_tuned_keeps_to_its_goal(log):
     ]:
         with pytest.raises(ValueError, match=words):
             sw.tune(log.x[0], "sf", **{"evaluations": 20, **keywords})
+
+
+def test_what_the_program_tuned_is_read(log, tmp_path):
+    """A file of ``spikewire tune --emit toml``, which has comments, lists and words."""
+    for text, expected in [
+        ('# gyro_x\nscheme = "sf"\nsample = "f32"\nthreshold = 0.35\n', sw.StepForward(threshold=0.35)),
+        ('scheme = "sf"\nsample = "q8.8"\nthreshold = [1, 2.5]\n', sw.StepForward(threshold=[1, 2.5], sample="q8.8")),
+        ('scheme = "hsa"\nfilter = [0.25, 1, 0.5]\nshift = -2.5\n', sw.Hough(filter=[0.25, 1, 0.5], shift=-2.5)),
+        ('scheme = "tbr"\nfactor = 0.5\nmagnitudes = true\n', sw.TemporalContrast(factor=0.5, magnitudes=True)),
+    ]:
+        path = tmp_path / "own.toml"
+        path.write_text(text)
+        for read in (sw.Scheme.from_toml(text), sw.Scheme.from_toml(path)):
+            assert read == expected and np.array_equal(read.encode(log.x), expected.encode(log.x))
+    path.write_text('scheme = "sf"\n\nthreshold = -1\n')
+    with pytest.raises(sw.Error, match=r"own.toml:3: `?threshold`? (= )?-1 must be above 0") as caught:
+        sw.Scheme.from_toml(path)
+    assert caught.value.parameter == "threshold" and caught.value.file == str(path)
+    with pytest.raises(sw.Error, match="nowhere.toml"):
+        sw.Scheme.from_toml(tmp_path / "nowhere.toml")
+
+
+@pytest.mark.skipif("SPIKEWIRE" not in os.environ, reason="SPIKEWIRE names the laptop program")
+def test_a_file_of_tune_is_read(log, tmp_path):
+    path = tmp_path / "roll.toml"
+    tune = [os.environ["SPIKEWIRE"], "tune", FLIGHT, "--column", "gyro_x", "--scheme", "sf", "--evaluations", "20"]
+    subprocess.run([*tune, "--emit", "toml", "-o", path], check=True, capture_output=True)
+    assert sw.Scheme.from_toml(path).encode(log.x[0]).count > 0
 
 
 def test_advice_names_a_scheme(log):
@@ -104,6 +135,8 @@ def test_every_scheme_has_a_constant_and_a_file(scheme, log):
     else:
         assert own.to_rust("ROLL").startswith("pub static ROLL: spikewire::")
     assert f'scheme = "{own.name}"' in own.to_toml()
+    again = sw.Scheme.from_toml(own.to_toml())
+    assert type(again) is scheme and again.to_toml() == own.to_toml()
 
 
 @pytest.mark.parametrize("name", ["es", "evt2", "link,period=1000,channels=4", "eieio,signed=1", "csv"])
@@ -116,6 +149,25 @@ def test_events_there_and_back(name, tmp_path):
     assert np.array_equal(again, events), name
     with pytest.raises(ValueError, match="addresses must be 0 to 65535"):
         sw.write_events(np.array([(0, 1 << 16, 1)], dtype=sw.EVENTS), name)
+
+
+@pytest.mark.parametrize("name", ["es", "evt2", "evt3", "csv"])
+def test_events_of_a_camera_keep_their_rows(name):
+    # Names and types as those of tonic and of expelliarmus.
+    for fields in ("<i2 <i2 <i8 u1", "<i8 <i8 <i8 ?"):
+        x, y, t, p = fields.split()
+        events = np.zeros(1000, dtype=[("x", x), ("y", y), ("t", t), ("p", p)])
+        at = np.arange(1000)
+        events["x"], events["y"], events["t"], events["p"] = at * 7919 % 640, at % 480, at // 4 * 977, at % 3 == 0
+        again = sw.read_events(sw.write_events(events, name), name)
+        assert again.dtype.names == ("t", "x", "y", "p")
+        for field in again.dtype.names:
+            assert np.array_equal(again[field], events[field]), (name, field)
+    with pytest.raises(ValueError, match="events of a camera have columns and rows"):
+        sw.write_events(events, "link")
+    words = np.array([8 << 28, 1 << 28 | 3 << 11 | 32], dtype="<u4").tobytes()
+    with pytest.raises(ValueError, match="rows from 32 on: 1"):
+        sw.read_events(words, "evt2")
 
 
 def test_times_go_on_where_they_wrap():

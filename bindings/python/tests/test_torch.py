@@ -37,6 +37,17 @@ def test_cells_are_those_of_encode(scheme, time, split):
     assert np.array_equal(spikes.numpy(), by_slot)
 
 
+def test_time_is_an_axis_of_the_samples():
+    step = sw.StepForward(threshold=0.1)
+    for time in (3, 5, -4, True, 1.5):
+        with pytest.raises(sw.Error, match="axis"):
+            Encode(step, time=time)(X)
+    with pytest.raises(sw.Error, match="not one number"):
+        Encode(step)(torch.tensor(1.0))
+    with pytest.raises(sw.Error, match="channel 0, sample 1: NaN is not finite"):
+        Encode(step)(torch.tensor([0.0, float("nan")]))
+
+
 def test_still_samples_are_drawn_by_step():
     still = torch.tensor([[0.0, 1.0, 0.5], [1.0, 0.0, 0.5]])
     spikes = Encode(sw.Bernoulli(min=0, max=1, seed=1), num_steps=400)(still)

@@ -1,8 +1,11 @@
 """What users of networks do with the package: chance, forks, layouts, weights, threads, words."""
 
+import copy
 import functools
+import inspect
 import multiprocessing
 import os
+import pickle
 import sys
 import threading
 import warnings
@@ -124,6 +127,9 @@ def test_a_transform_takes_tensors_without_a_copy(x):
         (lambda: sw.score(np.ma.array([1.0, 2.0], mask=[0, 1]), sw.StepForward(threshold=1)), "sample at 1 is masked"),
         (lambda: sw.Position(neurons=9).encode([[0.0, 1.0], [2.0, 2.0]]), "channel 1: "),
         (lambda: sw.StepForward(threshold=1).encode(np.zeros((2, 3)), axis=2), "axis 2: there are 2 axes"),
+        (lambda: sw.Filter.low_pass(40, rate=500).filter([0.0, np.inf]), "channel 0, sample 1: inf is not finite"),
+        (lambda: sw.Filter.low_pass(40, rate=500).filter([[0.0], [1e39]]), "channel 1, sample 0: 1e39 is beyond f32"),
+        (lambda: sw.Filter.low_pass(40, rate=500).filter(3.0), "samples are an array"),
     ],
 )
 def test_what_is_bad_is_named(call, words):
@@ -143,11 +149,91 @@ def test_a_mask_without_a_hole_is_no_matter(x):
     assert np.array_equal(spikes_of(np.ma.array(x)), spikes_of(x))
 
 
+def told_once(call):
+    """The one warning of a call, which names the caller's line."""
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        call()
+    assert len(told) == 1 and told[0].filename == __file__, [str(own.message) for own in told]
+    return str(told[0].message)
+
+
 def test_whole_numbers_beyond_f32_are_told():
     degrees = 473_977_423 + np.cumsum(np.ones(100, np.int32))
-    with pytest.warns(UserWarning, match="samples reach 473977523: f32 holds whole numbers to 16777216, and i32 does"):
-        sw.StepForward(threshold=3).encode(degrees)
+    words = told_once(lambda: sw.StepForward(threshold=3).encode(degrees))
+    assert words.startswith("f32 loses the column's own steps: they are 1 on average") and "; i32 hold" in words
     assert sw.StepForward(threshold=3, sample="i32").encode(degrees).count > 20
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda step, x: step.encode(x),
+        lambda step, x: step.encode(x[:, None], axis=0),
+        lambda step, x: step.fit(x),
+        lambda step, x: step.encoder().encode(x),
+        lambda step, x: sw.Filter.low_pass(40, rate=500).filter(x),
+        lambda step, x: sw.plot(x, step),
+        lambda step, x: sw.tune(x, "sf", max_rmse=1e4, evaluations=4, hold_out=0, anyway=True),
+    ],
+)
+@pytest.mark.parametrize("times", [1, 40])
+def test_steps_that_the_type_loses_are_told(call, times):
+    walk = np.cumsum(np.random.default_rng(1).normal(size=1000 * times))
+    call = functools.partial(call, sw.StepForward(threshold=1))
+    assert "f32 loses the column's own steps" in told_once(lambda: call(walk + 1e9))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        call(walk), call(np.tile(walk, 50) + 300), call(walk.astype(np.float32) + np.float32(1e9))
+
+
+def test_the_first_channel_that_loses_its_steps_is_named():
+    x = np.array([[0.0, 1.0, 0.0], [1e9, 1e9 + 1, 1e9]])
+    assert told_once(lambda: sw.StepForward(threshold=0.5).encode(x)).startswith("channel 1: f32 loses")
+    words = told_once(lambda: sw.StepForward(threshold=0.5, sample="q8.8").encode([0.0, 1e-4, 2e-4]))
+    assert words.startswith("q8.8 loses the column's own steps")
+
+
+RANGED = [scheme for scheme in sw.schemes.values() if {"min", "max"} <= {own["name"] for own in scheme._info["parameters"]}]
+
+
+def test_fourteen_codes_have_a_range():
+    assert len(RANGED) == 14
+
+
+@pytest.mark.parametrize("scheme", RANGED)
+@pytest.mark.parametrize("kind", [np.float32, np.float64, np.int16])
+def test_samples_outside_the_range_are_told_with_their_share(scheme, kind):
+    inside = np.tile(np.array([-100, 0, 50, 100], kind), (3, 25))
+    outside = inside.copy()
+    outside[1, ::4] += 250
+    outside[2, 3::4] -= 300
+    own = scheme(paper=True, min=-100, max=100)
+    words = "50 of 300 samples, 16.6667 %, lie outside the code's range, min -100 to max 100"
+    for x, axis in [(outside, -1), (outside.T.copy(), 0), (np.repeat(outside, 2, 1)[:, ::2], -1)]:
+        assert told_once(lambda: own.encode(x, axis=axis)).startswith(words)
+    fitted = own.fit(inside)
+    assert told_once(lambda: fitted.encoder(3).encode(outside)).startswith(words)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        own.encode(inside), fitted.encoder(3).encode(inside), scheme(paper=True).encode(outside)
+        scheme(paper=True).fit(outside).encode(outside)
+
+
+def test_a_range_is_as_coarse_as_the_sample_type():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        third = np.array([0.1, 1 / 3, 0.7])
+        for sample in ["f32", "q8.8", "q16.16"]:
+            own = sw.WeightedPhase(min=0.1, max=0.7, sample=sample)
+            own.encode(third), own.encoder().encode(third)
+        sw.WeightedPhase(min=[0, -5], max=[1, 5]).encode([[0.0, 1.0], [-5.0, 5.0]])
+    words = told_once(lambda: sw.WeightedPhase(min=[0, -5], max=[1, 5]).encode([[0.0, 1.0], [-5.0, 6.0]]))
+    assert words.startswith("1 of 4 samples, 25 %, lie outside the code's range, min -5 to max 5")
+    sender = sw.Sender(sw.WeightedPhase(min=-1, max=1, slots=8), period=1000)
+    assert told_once(lambda: sender.encode([0, 0, 0, 0, 0, 9.8])).startswith("1 of 6 samples")
+    assert told_once(lambda: sw.plot([0.0, 1.0, 2.0], sw.WeightedPhase(min=0, max=1))).startswith("1 of 3 samples")
+    assert any("lie outside" in note for note in sw.score([0.0, 1.0, 2.0], sw.WeightedPhase(min=0, max=1))["notes"])
 
 
 FIXED = sw.StepForward(threshold=1, sample="q8.8")
@@ -165,6 +251,7 @@ FIXED = sw.StepForward(threshold=1, sample="q8.8")
         lambda x: sw.Sender(FIXED, period=1000).encode(x),
         lambda x: sw.Sender([FIXED] * 6, period=1000).encode(x),
         lambda x: sw.ToSpikes(FIXED)(x),
+        lambda x: sw.Filter.first_order(40, rate=500).filter(x, sample="q8.8"),
         lambda x: sw.plot(x, FIXED),
         lambda x: sw.tune(x, "sf", sample="q8.8", evaluations=4, hold_out=0, anyway=True),
         lambda x: sw.advise(np.tile(x, 20), sample="q8.8", evaluations=4),
@@ -305,8 +392,6 @@ def test_a_filter_passes_half_the_power_at_its_cut_off():
 
 
 def test_a_transform_is_a_step_of_a_pipeline(x):
-    import pickle
-
     transform = sw.ToSpikes(sw.StepForward(threshold=0.1), axis=0, dtype=np.float32)
     again = pickle.loads(pickle.dumps(transform))
     assert again(x.T).dtype == np.float32 and again(x.T).shape == (200, 2)
@@ -394,14 +479,148 @@ def test_spikes_are_an_array(x):
     assert spikes.count == np.abs(array.astype(int)).sum()
 
 
+def test_spikes_go_where_arrays_go(x):
+    spikes = sw.SendOnDelta(threshold=0.05, spikes=4).encode(x)
+    array = spikes.array
+    assert isinstance(spikes, np.ndarray) and type(array) is np.ndarray and np.shares_memory(spikes, array)
+    assert spikes.max() == array.max() and max(spikes.flat) == max(array.flat)
+    assert spikes.tolist() == array.tolist() and [row.tolist() for row in spikes] == array.tolist()
+    for own, same in [
+        (spikes.reshape(-1), array.reshape(-1)),
+        (spikes.flatten(), array.flatten()),
+        (spikes.copy(), array),
+        (spikes.real, array),
+        (spikes[:, 3:9], array[:, 3:9]),
+        (np.concatenate([spikes, spikes]), np.concatenate([array, array])),
+        (np.stack([spikes, spikes]), np.stack([array, array])),
+        (np.where(spikes > 0, spikes, 0), np.where(array > 0, array, 0)),
+        (np.moveaxis(spikes, 0, 1), array.swapaxes(0, 1)),
+        (np.split(spikes, 2)[1], array[1:]),
+        (np.asarray(spikes), array),
+        (np.array(spikes), array),
+        (next(iter(spikes)), array[0]),
+    ]:
+        assert np.array_equal(own, same) and type(own) is type(same)
+    for again in (pickle.loads(pickle.dumps(spikes)), copy.copy(spikes), copy.deepcopy(spikes)):
+        assert repr(again) == repr(spikes) == str(spikes) and np.array_equal(again.decode(), spikes.decode())
+    assert repr(np.array(spikes, subok=True)) == repr(array)
+    with pytest.raises(TypeError, match="spikes are not written to"):
+        spikes[0] = 1
+    with pytest.raises(sw.Error, match="spikes are not written to"):
+        spikes += 1
+
+
+def test_spikes_are_tables_and_tensors(x):
+    spikes = sw.StepForward(threshold=0.1).encode(x.T, axis=0)
+    pandas = pytest.importorskip("pandas")
+    assert np.array_equal(pandas.DataFrame(spikes, columns=spikes.names), spikes.array)
+    assert type(pandas.DataFrame(spikes).to_numpy()) is np.ndarray
+    torch = pytest.importorskip("torch")
+    for tensor in (torch.from_numpy(spikes), torch.as_tensor(spikes), torch.tensor(spikes), torch.from_dlpack(spikes)):
+        assert tensor.dtype == torch.int8 and np.array_equal(tensor.numpy(), spikes.array)
+
+
+# Pickles.
+
+
+def test_ends_and_filters_pickle(x):
+    quiet = sw.Filter.notch(60, rate=500, q=2).then(sw.Filter.low_pass(40, rate=500)).then(sw.Filter.first_order(9, rate=500))
+    again = pickle.loads(pickle.dumps(quiet))
+    assert again == quiet and repr(again) == repr(quiet) and hash(again) == hash(quiet) and again.delay == quiet.delay
+    assert np.array_equal(again.filter(x), quiet.filter(x)) and again != sw.Filter.low_pass(40, rate=500)
+    step = sw.StepForward(threshold=0.1)
+    sender, receiver = sw.Sender(step, 1000, filter=quiet, label="a"), sw.Receiver([step] * 6, 1000, filter=quiet, label="a")
+    ends = [(sender, receiver), pickle.loads(pickle.dumps((sender, receiver))), copy.deepcopy((sender, receiver))]
+    frames = [near.encode([1, 0, 0, 0, 0, 9.8]) for near, _ in ends]
+    assert frames[0] and frames[1] == frames[2] == frames[0]
+    for (_, far), sent in zip(ends, frames):
+        for kind in (bytes, bytearray, memoryview):
+            far.hear(kind(sent[0]))
+        assert far.values[5] != 0
+    for end in (sender, receiver):
+        with pytest.raises(sw.Error, match="is at work: a pickle has what it was made of"):
+            pickle.dumps(end)
+
+
+def test_a_network_pickles_with_its_state():
+    layers = '[[layers]]\nname = "one"\nkeep = [0.9, 0.3]\nweights = [[0.1, 0.7], [0.3, 0.9]]\n'
+    network = sw.Network.from_toml(layers)
+    network.step([0]), network.step([1])
+    again = pickle.loads(pickle.dumps(network))
+    assert np.array_equal(again.step([0]), network.step([0])) and again.fired == network.fired
+    with pytest.raises(sw.Error, match="another network's"):
+        again.__setstate__([([0.0], [0.0], [])])
+
+
+# One kind of error.
+
+
+@pytest.mark.parametrize(
+    "call, kind",
+    [
+        (lambda: sw.StepForward(0.1), TypeError),
+        (lambda: sw.StepForward(treshold=0.1), TypeError),
+        (lambda: sw.StepForward(threshold={}), TypeError),
+        (lambda: sw.StepForward(threshold=0.1).encode("abc"), ValueError),
+        (lambda: sw.StepForward(threshold=0.1).encode([[1], [1, 2]]), ValueError),
+        (lambda: sw.StepForward(threshold=0.1).encoder(-1), ValueError),
+        (lambda: sw.StepForward(threshold=0.1).encoder("two"), TypeError),
+        (lambda: sw.schemes["x"], KeyError),
+        (lambda: sw.Sender(sw.StepForward(threshold=1), period=70_000), OverflowError),
+        (lambda: sw.Sender(sw.StepForward(threshold=1), period=2.5), TypeError),
+        (lambda: sw.Sender(sw.StepForward(threshold=1), 1000).encode([1, 2]), ValueError),
+        (lambda: sw.Receiver(sw.StepForward(threshold=1), 1000).hear(5), TypeError),
+        (lambda: sw.Receiver(sw.StepForward(threshold=1), 1000).advance(-1), OverflowError),
+        (lambda: sw.tune([1.0, 2.0], "sf", evaluations=-3), ValueError),
+        (lambda: sw.tune([1.0, 2.0], "nothing"), ValueError),
+        (lambda: sw.score([1.0, 2.0], sw.StepForward(threshold=1), rate="fast"), ValueError),
+        (lambda: sw.Filter.low_pass("low", rate=500), ValueError),
+        (lambda: sw.low_pass(None, 500), TypeError),
+        (lambda: sw.Network.from_nir("nowhere.nir"), ValueError),
+        (lambda: sw.Network.from_nir("nowhere.nir", reset=3), TypeError),
+        (lambda: sw.Flight("nowhere.toml"), ValueError),
+        (lambda: sw.read("nowhere.csv", colour="red"), TypeError),
+        (lambda: sw.read_events("nowhere.raw", "evt2"), OSError),
+        (lambda: sw.Log(np.zeros((1, 2)), None, ["a"], [])["b"], KeyError),
+        (lambda: sw.Scheme.from_toml("scheme = 3"), ValueError),
+        (lambda: sw.dataset("nowhere*.ulg", "nowhere.toml", "spikes"), ValueError),
+    ],
+)
+def test_all_that_is_raised_is_an_error_of_the_package(call, kind):
+    with pytest.raises(sw.Error) as caught:
+        call()
+    error = caught.value
+    assert isinstance(error, ValueError) and isinstance(error, kind) and str(error)
+    assert all(hasattr(error, name) for name in ["parameter", "value", "file", "kind", "remedy"])
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)
+
+
+def test_hints_of_types_can_be_read():
+    """Of all that is public; some tools, such as those of validation, read them while a program runs."""
+    from typing import get_type_hints
+
+    count = 0
+    for name in sw.__all__:
+        own = getattr(sw, name)
+        if not callable(own):
+            continue
+        get_type_hints(own)
+        for member in vars(own).values() if isinstance(own, type) else [own]:
+            member = getattr(member, "fget", None) or getattr(member, "__func__", member)
+            if inspect.isfunction(member):
+                get_type_hints(member)
+                count += 1
+    assert count > 150
+
+
 def test_words_for_a_wrong_scheme_or_axis(x):
     with pytest.raises(KeyError, match="there is no scheme 'x'; there are tbr, "):
         sw.schemes["x"]
     step = sw.StepForward(threshold=0.1)
     spikes = step.encode(x).array
     for call in (step.encode, lambda x, axis: step.decode(spikes, 0, axis), lambda x, axis: step.decode_weighted(spikes, 0, axis)):
-        with pytest.raises(ValueError, match="axis is that of time, a whole number from -2 to 1, and not None"):
-            call(x, axis=None)
+        with pytest.raises(ValueError, match="axis is that of time, a whole number from -2 to 1, and not 1.5"):
+            call(x, axis=1.5)
         with pytest.raises(ValueError, match="axis 2: there are 2 axes"):
             call(x, axis=2)
     with pytest.raises(ValueError, match="axis 7: there are 1 axes"):

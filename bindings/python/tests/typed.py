@@ -22,3 +22,15 @@ for chip in (ReckOn(12, 20, 3), TinyOdin(12, 20, 3)):
 rust: str = flown.network().to_rust([[0, 1], [2]])
 array = sw.StepForward(threshold=0.1).encode(np.zeros(9))
 same: np.ndarray = np.asarray(array) * 2
+
+one = sw.StepForward(threshold=np.float32(0.1)).encode(np.zeros((2, 9), np.float32))
+two = sw.Gaussian(neurons=np.int64(9), min=np.float64(0), max=1, sample="f32")
+x = np.zeros((2, 900))
+best = sw.advise(x[0], rate=np.float64(200)).best
+if best is not None:
+    print(best.scheme.name)
+print([own.page for own in sw.advise(x)], sw.advise([0.0, 1.0]).page, sw.low_pass(np.float32(20), rate=np.int64(1000)))
+events: np.ndarray = one.events(period=np.timedelta64(1, "ms"))
+names: list[str] | None = one.names
+frames: list[bytes] = sw.Sender(two, period=np.int32(1000)).encode(x[0, :6])
+again: sw.Scheme = sw.Scheme.from_toml(two.to_toml())

@@ -15,7 +15,7 @@ import sys
 import time
 from typing import Any
 
-from ros2_nodes import EPOCH, RATE, SF, Installed, loopback, main, nanoseconds, play, until
+from ros2_nodes import EPOCH, PATIENCE, RATE, SF, Installed, loopback, main, nanoseconds, play, until, until_all
 
 # Interfaces, peers beside multicast, and how soon a participant that says nothing is gone.
 os.environ["CYCLONEDDS_URI"] = """<CycloneDDS><Domain>
@@ -113,7 +113,7 @@ class Tests(Installed):
         with self.node("encode", SF) as node:
             until(lambda: has_readers(writer) and events.is_matched(), "discovery")
             play(writer, [lambda: imu(time.time_ns(), 0.0)] * samples, take)
-            until(lambda: (take(), len(arrived) == samples)[1], "all events")
+            until(lambda: (take(), len(arrived) == samples)[1], "all events", lambda: len(arrived))
             late = sorted((now - stamp) / 1e6 for stamp, now in arrived.items())
             node.stop()
         parts = statistics.quantiles(late, n=100)
@@ -135,7 +135,7 @@ class Tests(Installed):
             until(lambda: has_readers(writer) and events.is_matched() and diagnostics.is_matched(), "discovery")
             rates = [0.0, math.nan, 0.5, math.inf, -1e39, 1.0]
             play(writer, [imu(EPOCH + number * 10**6, rate) for number, rate in enumerate(rates)])
-            until(lambda: len(events.messages) == 3, "three events")
+            until_all([events], 3, "three events")
             assert [event.input for event in events.messages] == [0.0, 0.5, 1.0]
             until(lambda: counts().get("samples not finite") == 3, "the count")
 
@@ -149,7 +149,7 @@ class Tests(Installed):
             play(writer, [imu(2 * EPOCH + number * 10**6, 0.0) for number in range(500)])
             loopback("up")
             play(writer, [imu(2 * EPOCH + number * 10**6, 0.0) for number in range(500, 1000)])
-            until(lambda: counts()["messages in"] + counts().get("messages lost", 0) == before + 1000, "all counted")
+            until(lambda: counts()["messages in"] + counts().get("messages lost", 0) == before + 1000, "all counted", counts)
             assert 0 < counts()["messages lost"] < 1000, counts()
 
             dying = subprocess.Popen([sys.executable, __file__, "--publish"])
@@ -202,7 +202,7 @@ class Tests(Installed):
         with encoder:
             until(lambda: has_readers(writer) and events.is_matched(), "discovery")
             play(writer, [imu(EPOCH + number * 10**6, 1.5 + 0.07 * number) for number in range(50)])
-            until(lambda: len(events.messages) == 50, "the first events")
+            until_all([events], 50, "the first events")
             header = peer.reader("/event_header", String, LATCHED)
             until(lambda: header.messages, "the header, for one who comes late")
             lines = header.messages[0].data.splitlines()
@@ -212,13 +212,13 @@ class Tests(Installed):
                 until(values.is_matched, "a late decoder")
                 time.sleep(1.5)
                 play(writer, [imu(2 * EPOCH, 5.0)])
-                until(lambda: len(values.messages) == 1, "its first value")
+                until_all([values], 1, "its first value")
                 encoder.stop()
                 with self.node("encode", SF) as again:
                     until(lambda: has_readers(writer), "the encoder again")
                     time.sleep(1.5)
                     play(writer, [imu(3 * EPOCH, -2.0)])
-                    until(lambda: len(values.messages) == 2, "its first value again")
+                    until_all([values], 2, "its first value again")
                     assert values.messages[1].value == -2.0, values.messages[1]
                     again.stop()
                 told = decoder.stop()
@@ -243,25 +243,25 @@ class Tests(Installed):
             ({}, ("--params-file", "none.yaml"), "none.yaml"),
         ):
             with self.node("encode", {**SF, **changed}, *arguments) as node:
-                assert node.process.wait(20) == 2, node.said()
+                assert node.process.wait(PATIENCE) == 2, node.said()
                 assert text in node.said() and "panicked" not in node.said(), node.said()
                 print(f"{changed or arguments[1]}: exit status 2, {node.said().strip()[:120]}")
         with self.node("decode", {}, "-r", "event:=/number") as node:
-            assert node.process.wait(20) == 2 and "the topic is of std_msgs/Float64" in node.said(), node.said()
+            assert node.process.wait(PATIENCE) == 2 and "the topic is of std_msgs/Float64" in node.said(), node.said()
         for parameters, text in (
             ({"topic": "/imu"}, "flight is missing"),
             ({"topic": "/imu", "flight": "none.toml"}, "none.toml: No such file"),
             ({"topic": "/imu", "flight": "none.toml", "threshold": 1.0}, "threshold: it stands in the flight's file"),
         ):
             with self.node("flight", parameters) as node:
-                assert node.process.wait(20) == 2 and text in node.said(), node.said()
+                assert node.process.wait(PATIENCE) == 2 and text in node.said(), node.said()
         # RustDDS does not go on after this; its node says so, and ends.
         with self.node("encode", {**SF, "topic": "/number", "field": "data"}) as node:
             until(lambda: has_readers(writers[-1]), "discovery")
             node.process.send_signal(signal.SIGSTOP)
             time.sleep(0.2)
             node.process.send_signal(signal.SIGCONT)
-            assert node.process.wait(20) == 2 and "DDS has stopped" in node.said(), node.said()
+            assert node.process.wait(PATIENCE) == 2 and "DDS has stopped" in node.said(), node.said()
 
 
 def publish() -> None:

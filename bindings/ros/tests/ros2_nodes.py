@@ -17,15 +17,25 @@ SF = {"encoding_scheme": "step_forward", "threshold": 0.1, "topic": "/imu", "fie
 FLOWN = ("sf", "t-hsa", "sod", "grf-slots")
 EPOCH = 1_000_000_000
 RATE = 1000
+# Seconds for which a node may do nothing: one that works has answered or gone on long before, beside other programs, too.
+PATIENCE = 60.0
 
 
-def until(is_so: Callable[[], Any], what: str, seconds: float = 30.0) -> None:
-    """Waits."""
-    end = time.monotonic() + seconds
+def until(is_so: Callable[[], Any], what: str, progress: Callable[[], Any] = lambda: None) -> None:
+    """Waits for as long as `progress` changes, however slowly a busy machine brings it about, and `PATIENCE` without a change."""
+    seen, end = progress(), time.monotonic() + PATIENCE
     while not is_so():
+        if (now := progress()) != seen:
+            seen, end = now, time.monotonic() + PATIENCE
         if time.monotonic() > end:
-            raise TimeoutError(f"{what} took more than {seconds:.0f} s")
+            raise TimeoutError(f"{what}: nothing has changed for {PATIENCE:.0f} s, at {seen}")
         time.sleep(0.02)
+
+
+def until_all(readers: list[Any], count: int, what: str) -> None:
+    """Waits until each reader has as many messages, or more."""
+    counts = lambda: [len(reader.messages) for reader in readers]  # noqa: E731
+    until(lambda: all(have >= count for have in counts()), what, counts)
 
 
 def nanoseconds(time: Any) -> int:
@@ -60,7 +70,7 @@ class Node:
     def stop(self) -> str:
         """Ends it as Ctrl-C does; what it told at its end."""
         os.killpg(self.process.pid, signal.SIGINT)
-        assert self.process.wait(20) == 0, self.said()
+        assert self.process.wait(PATIENCE) == 0, self.said()
         return self.said().strip().splitlines()[-1].split("]: ", 1)[1]
 
 
@@ -129,13 +139,13 @@ class Installed:
             until(lambda: peer.has_readers(writer) and events.is_matched() and values.is_matched(), "discovery")
             time.sleep(2.0)
             play(writer, [peer.imu(EPOCH + number * 10**6, 0.15 * number) for number in range(4)])
-            until(lambda: len(values.messages) == 4, "four values")
+            until_all([values], 4, "four values")
             assert [event.spike for event in events.messages] == [0, 1, 1, 1], events.messages
             told = [node.stop() for node in (encoder, decoder)]
         with self.run("spikewire_ros", "encode", {**SF, "threshold": 0.0}) as node:
-            assert node.process.wait(20) == 2 and "threshold 0 must be above 0" in node.said(), node.said()
+            assert node.process.wait(PATIENCE) == 2 and "threshold 0 must be above 0" in node.said(), node.said()
         with self.run("spikewire", "encode", SF) as node:
-            assert node.process.wait(20) == 1 and "Package 'spikewire' not found" in node.said(), node.said()
+            assert node.process.wait(PATIENCE) == 1 and "Package 'spikewire' not found" in node.said(), node.said()
         print(f"ros2 run: encoder and decoder started, {len(values.messages)} values, ended: {told}")
 
     def params(self, name: str, node: str, parameters: dict[str, Any]) -> str:
@@ -175,10 +185,10 @@ class Installed:
             stamps = [EPOCH * 10**9 + 1000 * stamp for stamp in times]
             play(writer, [peer.imu(stamp, rate) for stamp, rate in zip(stamps, rates)])
             ahead = expected.LOOK_AHEAD.get(name, 0)
-            until(lambda: all(len(one.messages) >= len(rates) - ahead for one in every), f"the flight of {name}")
+            until_all(every, len(rates) - ahead, f"the flight of {name}")
             # What is left of a rate code comes at its end.
             told = encoder.stop()
-            until(lambda: all(len(one.messages) == len(rates) for one in every), f"the end of {name}")
+            until_all(every, len(rates), f"the end of {name}")
             decoder.stop()
         # The flight's log has pauses.
         assert told == "9 gaps", told
@@ -233,7 +243,7 @@ class Installed:
             # A node hears its publisher a little later than that hears the node.
             time.sleep(2.0)
             play(writer, samples)
-            until(lambda: all(len(one.messages) == len(samples) for one in every), "the flight")
+            until_all(every, len(samples), "the flight")
             told = [node.stop(), decoder.stop()]
         assert told[0] == "nothing lost, nothing refused" and told[1] in (told[0], "1 publishers lost"), told
         for one, sent in zip(spikes.messages, samples):

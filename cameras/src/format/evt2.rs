@@ -30,8 +30,8 @@ use spikewire::{Event, Tick};
 pub struct Evt2;
 
 const TIME_BITS: u32 = 34;
-const LOW_BITS: u32 = 6;
-const X_BITS: u32 = 11;
+pub(super) const LOW_BITS: u32 = 6;
+pub(super) const X_BITS: u32 = 11;
 pub(super) const X_MASK: u32 = (1 << X_BITS) - 1;
 /// Bits of y that no address of 16 bits has.
 const FAR_ROWS: u32 = X_MASK & !0x1F;

@@ -6,6 +6,8 @@
 //! | [`EventStream`] | `.es` files, the lossless log | 16 bits | any |
 //! | [`Evt2`] | Prophesee's tools | 16 of 22 bits | 34 bits |
 //! | [`Evt2Pixels`] | a [camera's events](crate::frame) in Prophesee's tools | x and y, 11 bits each | 34 bits |
+//! | [`Evt21Pixels`] | Prophesee's cameras, read only | x and y, 11 bits each | 34 bits |
+//! | [`Evt3Pixels`] | Prophesee's cameras and tools | x and y, 11 bits each | any |
 //! | [`Dvs`] | a camera's events in `.es` files | x and y, 16 bits each | any |
 //! | [`eieio`] | `SpiNNaker` boards, by UDP datagram | 32-bit keys | 32 bits a datagram |
 //!
@@ -23,7 +25,9 @@ mod edvs;
 pub mod eieio;
 mod event_stream;
 mod evt2;
+mod evt21_pixels;
 mod evt2_pixels;
+mod evt3_pixels;
 mod formatted;
 
 use core::fmt;
@@ -35,6 +39,8 @@ pub use edvs::{Edvs, EdvsDecoder, EdvsEncoder, EdvsTime};
 pub use event_stream::{EventStream, EventStreamDecoder, EventStreamEncoder};
 pub use evt2::{Evt2, Evt2Decoder, Evt2Encoder};
 pub use evt2_pixels::{Evt2Pixels, Evt2PixelsDecoder, Evt2PixelsEncoder};
+pub use evt3_pixels::{Evt3Pixels, Evt3PixelsDecoder, Evt3PixelsEncoder};
+pub use evt21_pixels::{Evt21Order, Evt21Pixels, Evt21PixelsDecoder};
 pub use formatted::Formatted;
 
 /// Writes events, one after the other: [`Event`]s with an address, or the
@@ -57,8 +63,14 @@ pub trait EventFormat<E = Event> {
 /// Reads events, a byte at a time: [`Event`]s with an address, or a camera's
 /// [`PixelEvent`](crate::frame::PixelEvent)s.
 pub trait EventDecoder<E = Event> {
-    /// Takes a byte, and returns the event that it completes.
+    /// Takes a byte, and returns the event that it completes, or the first of several. Take the others with
+    /// [`pending`](Self::pending) before the next byte.
     fn push(&mut self, byte: u8) -> Option<E>;
+
+    /// Returns the next event of a word with several, in formats that have such words.
+    fn pending(&mut self) -> Option<E> {
+        None
+    }
 
     /// How many bytes were skipped, as they belonged to no event that could be read.
     fn skipped(&self) -> u32;
@@ -68,7 +80,19 @@ pub trait EventDecoder<E = Event> {
 
     /// Takes bytes, cut anywhere, and returns the events that they complete. Take all of these.
     fn decode(&mut self, bytes: &[u8]) -> impl Iterator<Item = E> {
-        bytes.iter().filter_map(|&byte| self.push(byte))
+        let mut bytes = bytes.iter();
+        core::iter::from_fn(move || {
+            loop {
+                let pending = self.pending();
+                if pending.is_some() {
+                    return pending;
+                }
+                let event = self.push(*bytes.next()?);
+                if event.is_some() {
+                    return event;
+                }
+            }
+        })
     }
 }
 

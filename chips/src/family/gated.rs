@@ -83,6 +83,20 @@ impl<'a, I: Input, D: SpiDevice, P: AerPort> Gated<'a, I, D, P> {
         Ok(I::neuron(self.chip.fetch(bytes_of::<I>(neuron))?))
     }
 
+    /// Reads a neuron, and returns an error unless its parameters and its state are those of `expected`.
+    pub(super) fn expect_neuron(&mut self, neuron: u8, expected: &I::Neuron) -> Outcome<(), D, P> {
+        let expected = I::neuron_bytes(expected)?;
+        let read = self.chip.fetch(bytes_of::<I>(neuron))?;
+        for ((address, read), written) in bytes_of::<I>(neuron).zip(read).zip(expected) {
+            if read != written {
+                self.chip.state = State::NotReset;
+                let (written, read) = (written.into(), read.into());
+                return Err(ChipError::ReadBack { address: address.number(), written, read });
+            }
+        }
+        Ok(())
+    }
+
     /// Writes the synapse from `pre` to `post`.
     ///
     /// # Errors

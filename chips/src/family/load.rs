@@ -17,6 +17,26 @@ pub struct Progress {
     pub total: u32,
 }
 
+/// The network that the chip's memory contains.
+#[derive(Debug)]
+pub(super) struct Loaded<I: Input> {
+    pub(super) neurons: u16,
+    /// Number of rows of synapses.
+    pub(super) rows: u16,
+    /// The registers with which to run the network; `None` if the chip contains no network.
+    pub(super) registers: Option<I::Registers>,
+}
+
+impl<I: Input> Loaded<I> {
+    /// No network.
+    pub(super) const NONE: Self = Self { neurons: 0, rows: 0, registers: None };
+
+    fn new(network: &impl Describe<I>) -> Self {
+        let registers = Some(network.registers());
+        Self { neurons: network.neurons(), rows: network.rows(), registers }
+    }
+}
+
 /// Number of neurons in a chip of the ODIN family.
 const NEURONS: u16 = 256;
 
@@ -40,6 +60,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
         let half = frames(network);
         let total = half.wrapping_mul(2);
         let chip = &mut *self.chip;
+        chip.loaded = Loaded::NONE;
         each_byte(
             network,
             |address, keep, value| chip.put_byte(address, keep, value),
@@ -51,7 +72,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
             |address, keep, value| chip.expect_byte(address, keep, value),
             |done| progress(Progress { done: half.wrapping_add(done), total }),
         )?;
-        chip.check_sync()
+        chip.check_sync()?;
+        chip.loaded = Loaded::new(network);
+        Ok(())
     }
 
     /// Compares the chip's memories with a network. This includes the neurons' potentials, which change when the
@@ -73,7 +96,9 @@ impl<I: Input, D: SpiDevice, P: AerPort> Gated<'_, I, D, P> {
             |address, keep, value| chip.expect_byte(address, keep, value),
             |done| progress(Progress { done, total }),
         )?;
-        chip.check_sync()
+        chip.check_sync()?;
+        chip.loaded = Loaded::new(network);
+        Ok(())
     }
 }
 

@@ -23,6 +23,7 @@ use embedded_hal::spi::{ErrorType, SpiDevice};
 
 use super::ChipError;
 use aer::{Aer, Carries};
+use load::Loaded;
 use spikewire::Event;
 use sync::Beacon;
 use time::Time;
@@ -78,6 +79,8 @@ pub struct OdinChip<I: Input, D, P> {
     state: State,
     /// Registers that the chip was started with; `None` while the chip is gated.
     registers: Option<I::Registers>,
+    /// The network in the chip's memory, as far as is known since the last reset.
+    loaded: Loaded<I>,
     /// Value of the byte that the sync check writes to; `None` until the driver has read it.
     anchor: Option<u8>,
     beacon: Option<Beacon>,
@@ -114,6 +117,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
             aer: Aer::new(port, polls),
             state: State::NotReset,
             registers: None,
+            loaded: Loaded::NONE,
             anchor: None,
             beacon: None,
             held: None,
@@ -172,6 +176,7 @@ impl<I: Input, D: SpiDevice, P: AerPort> OdinChip<I, D, P> {
         delay.delay_us(RESET_US);
         self.counters.resets = self.counters.resets.saturating_add(1);
         (self.anchor, self.beacon) = (None, None);
+        self.loaded = Loaded::NONE;
         self.shut()?;
         self.find_beacon()?;
         Ok(Gated::new(self))

@@ -125,6 +125,20 @@ pub struct ReckOn<D, P> {
     state: State,
     settings: ReckOnSettings,
     sizes: Sizes,
+    /// The outputs of the network that was loaded after the last reset, which clears the chip's registers; `None` before
+    /// that.
+    outputs: Option<Outputs>,
+}
+
+/// The registers and weights of a network's outputs, as far as time steps of [`ReckOnSteps`] depend on them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Outputs {
+    /// Left shift of the weights.
+    shift: u8,
+    /// Factor by which a tick multiplies a potential, in units of 1/128.
+    keep: u8,
+    /// For the output at which it is largest: the sum of all weights of one sign, without its sign and before the shift.
+    sum: u16,
 }
 
 /// The numbers of the network's last input, last neuron and last output, as the driver gives them to the chip.
@@ -165,7 +179,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
         let wire = Wire { device };
         let sizes = Sizes { input: 255, neuron: 255, output: 15 };
         let settings = ReckOnSettings::LABEL;
-        Self { wire, port, polls, state: State::NotReset, settings, sizes }
+        Self { wire, port, polls, state: State::NotReset, settings, sizes, outputs: None }
     }
 
     /// Pulses reset, which brings chip and bus into sync, and checks that the chip answers. The chip's memories keep
@@ -175,6 +189,7 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOn<D, P> {
     /// Returns an error if the port or the bus failed, or if memory reads back a different value than was written.
     pub fn reset(&mut self, delay: &mut impl DelayNs) -> Outcome<Programmed<'_, D, P>, D, P> {
         self.state = State::NotReset;
+        self.outputs = None;
         self.clear_pins().map_err(ChipError::Port)?;
         delay.delay_us(RESET_US);
         self.port.set_reset(false).map_err(ChipError::Port)?;

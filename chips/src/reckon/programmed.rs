@@ -5,8 +5,8 @@ use embedded_hal::spi::SpiDevice;
 use super::network::check;
 use super::wire::Address;
 use super::{
-    DescribeReckOn, OPEN, Outcome, ReckOn, ReckOnPair, ReckOnPort, ReckOnSettings, Sizes, Started,
-    State,
+    DescribeReckOn, OPEN, Outcome, Outputs, ReckOn, ReckOnPair, ReckOnPort, ReckOnSettings,
+    ReckOnShared, Sizes, Started, State,
 };
 use crate::error::{at_most, in_range};
 use crate::{ChipError, Progress};
@@ -52,6 +52,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
         )?;
         chip.check_sync()?;
         chip.sizes = sizes(network);
+        chip.outputs = None;
         let shared = network.shared();
         for (register, shift) in (12..).zip(shared.shifts) {
             self.set_register(register, shift.into())?;
@@ -67,6 +68,7 @@ impl<'a, D: SpiDevice, P: ReckOnPort> Programmed<'a, D, P> {
             let bits = pairs.fold(0_u32, |bits, bit| bits | 1 << bit);
             self.set_register(register.wrapping_add(65), bits)?;
         }
+        self.chip.outputs = Some(outputs(network));
         Ok(())
     }
 
@@ -238,6 +240,22 @@ fn sizes(network: &impl DescribeReckOn) -> Sizes {
         neuron: last(network.neurons()) | 1,
         output: last(network.outputs()),
     }
+}
+
+fn outputs(network: &impl DescribeReckOn) -> Outputs {
+    let ReckOnShared { shifts: [.., shift], keep, .. } = network.shared();
+    let mut sum = 0_u16;
+    for output in 0..network.outputs() {
+        // 256 weights of -128 have the sum -32 768: the sums fit 16 bits without their sign.
+        let [mut rises, mut falls] = [0_u16; 2];
+        for neuron in 0..network.neurons() {
+            let weight = network.output_weight(neuron, output);
+            let side = if weight > 0 { &mut rises } else { &mut falls };
+            *side = side.saturating_add(weight.unsigned_abs().into());
+        }
+        sum = sum.max(rises).max(falls);
+    }
+    Outputs { shift, keep, sum }
 }
 
 fn pair(network: &impl DescribeReckOn, pair: u16) -> ReckOnPair {

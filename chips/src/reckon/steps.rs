@@ -2,7 +2,7 @@
 
 use embedded_hal::spi::SpiDevice;
 
-use super::{Outcome, ReckOnAnswer, ReckOnPort, ReckOnSample, ReckOnStep};
+use super::{Outcome, Outputs, ReckOnAnswer, ReckOnPort, ReckOnSample, ReckOnStep};
 use crate::ChipError;
 use crate::error::in_range;
 
@@ -83,12 +83,22 @@ pub enum ReckOnOutputs<'a> {
     /// Each output reports the spikes of a neuron of the last layer.
     Spikes,
     /// The outputs are neurons that never fire, which share the leak of the chip's outputs.
+    ///
+    /// **Limit:** the chip clips a potential to 16 bits, after each weight that it adds. A potential at the end of its
+    /// range is reported as [`Clipped`](ChipError::Clipped). Weights of both signs in one tick can hide a clip: one weight
+    /// brings the potential to the end of its range, and the next one away from it. The answer then shows no trace of
+    /// it. This cannot occur while the potential is further from the end of its range than the sum of all weights of
+    /// one sign that lead to the output.
     Potentials {
         /// Value of 1 in an answer, in the units of the trained network.
         unit: f32,
     },
     /// The outputs are neurons that never fire, and whose leaks the chip's one leak for all outputs does not match. The
     /// chip only adds up the weights of each step; the driver adds these sums to potentials that leak.
+    ///
+    /// **Limit:** for each output, all of its weights that are above 0, after the left shift, may have a sum of up to
+    /// 16 382, and so may those below 0. The chip clips a potential to 16 bits, and a potential reaches twice the sum.
+    /// With a left shift of 1, 64 weights of 127 fit. A larger shift gains nothing, because the driver's sums are exact.
     Leaky {
         /// Value of 1 in a sum of weights, in the units of the trained network.
         unit: f32,
@@ -106,6 +116,9 @@ impl ReckOnOutputs<'_> {
     /// 1 or more. Each tick of the chip halves the output's potential. The driver calculates the sum of a tick's weights
     /// from two answers.
     pub const LEAKY_KEEP: u8 = 64;
+    /// Largest sum of an output's weights of one sign, after the left shift, for outputs that are
+    /// [`Leaky`](Self::Leaky).
+    pub const LEAKY_SUM: u16 = 16_382;
     /// The bit of an answer that says whether the neuron of an output that reports spikes fired.
     const FIRED: u8 = 12;
 }
@@ -123,6 +136,72 @@ pub struct ReckOnStepsState {
 impl ReckOnStepsState {
     /// The state at the beginning of a sample.
     pub const REST: Self = Self { has_run: false, answer: [0; 16], values: [0.0; 16] };
+
+    /// Returns the values of the outputs after the last step, also after a step that ended in
+    /// [`Clipped`](ChipError::Clipped).
+    #[must_use]
+    pub const fn values(&self) -> [f32; 16] {
+        self.values
+    }
+}
+
+impl ReckOnSteps<'_> {
+    /// Returns an error unless the steps fit the network that was loaded. `input` and `output` are the numbers of the
+    /// network's last input and last output.
+    fn check<B, P>(
+        &self,
+        input: u8,
+        output: u8,
+        outputs: Option<Outputs>,
+    ) -> Result<(), ChipError<B, P>> {
+        let Some(Outputs { shift, keep, sum }) = outputs else {
+            return Err(ChipError::OtherNetwork);
+        };
+        in_range("ticks", self.ticks.len().min(256) as i64, 1, 255)?;
+        in_range("inputs of steps", self.inputs.into(), 0, i64::from(input).saturating_add(1))?;
+        for tick in self.ticks {
+            for other in tick.always.iter().chain(tick.raises) {
+                in_range("input of a tick", (*other).into(), 0, input.into())?;
+            }
+        }
+        match self.outputs {
+            ReckOnOutputs::Spikes => {
+                let (_, shift_of_spikes, keep_of_spikes) = ReckOnOutputs::SPIKES;
+                exactly("shift of outputs", shift, shift_of_spikes)?;
+                exactly("keep of outputs", keep, keep_of_spikes)
+            }
+            // A factor above 1 would let potentials wrap around.
+            ReckOnOutputs::Potentials { .. } => in_range("keep of outputs", keep.into(), 1, 128),
+            ReckOnOutputs::Leaky { keeps, .. } => {
+                exactly("keep of outputs", keep, ReckOnOutputs::LEAKY_KEEP)?;
+                in_range("shift of outputs", shift.into(), 1, 7)?;
+                let count = i64::from(output).saturating_add(1);
+                in_range("keeps", keeps.len().min(17) as i64, count, count)?;
+                let sum = i64::from(sum) << (shift & 7);
+                in_range("sum of output weights", sum, 0, ReckOnOutputs::LEAKY_SUM.into())
+            }
+        }
+    }
+}
+
+fn exactly<B, P>(what: &'static str, value: u8, expected: u8) -> Result<(), ChipError<B, P>> {
+    in_range(what, value.into(), expected.into(), expected.into())
+}
+
+impl Outputs {
+    /// Returns the number of an output whose potential was at the end of its range before it leaked to its answer, or
+    /// `None` if all answers are those of smaller potentials.
+    fn clipped(self, answer: [i16; 16]) -> Option<u8> {
+        let [least, most] =
+            [i16::MIN, i16::MAX].map(|end| (i32::from(end) * i32::from(self.keep)) >> 7);
+        for (output, answer) in (0..).zip(answer) {
+            let answer = i32::from(answer);
+            if answer <= least || answer >= most {
+                return Some(output);
+            }
+        }
+        None
+    }
 }
 
 impl<D: SpiDevice, P: ReckOnPort> ReckOnSample<'_, D, P> {
@@ -134,19 +213,29 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOnSample<'_, D, P> {
     /// [`ReckOnSettings::POTENTIALS`](super::ReckOnSettings::POTENTIALS).
     ///
     /// # Errors
-    /// Returns an error if the network has no such input, if `steps` has no ticks or more than 255, or if the settings
-    /// do not answer in each step. Also returns the errors of [`step`](Self::step). The step is then incomplete: begin
-    /// a new sample, or reset the chip if the driver refuses that.
+    /// Before anything is sent, returns [`OutOfRange`](ChipError::OutOfRange) if `steps` contradicts its own
+    /// documentation or does not fit the network that was loaded, and [`OtherNetwork`](ChipError::OtherNetwork) if none
+    /// was loaded after the last reset.
+    ///
+    /// Returns [`Clipped`](ChipError::Clipped) after a complete step in which an output's potential reached the end of
+    /// its 16 bits: this output's value is wrong until the potential has decayed.
+    /// [`values`](ReckOnStepsState::values) returns the values of all outputs. The next call goes on.
+    ///
+    /// Also returns an error if the network has no such input or if the settings do not answer in each step, and the
+    /// errors of [`step`](Self::step). The step is then incomplete: begin a new sample, or reset the chip if the driver
+    /// refuses that.
     pub fn run(
         &mut self,
         steps: &ReckOnSteps<'_>,
         state: &mut ReckOnStepsState,
         inputs: impl IntoIterator<Item = u16>,
     ) -> Outcome<[f32; 16], D, P> {
+        let (sizes, outputs) = (self.chip.sizes, self.chip.outputs);
+        steps.check(sizes.input, sizes.output, outputs)?;
         let count = steps.ticks.len();
-        in_range("ticks", count.min(256) as i64, 1, 255)?;
+        let mut clipped = None;
         for input in inputs {
-            in_range("input", input.into(), 0, i64::from(steps.inputs.min(256)) - 1)?;
+            in_range("input", input.into(), 0, i64::from(steps.inputs) - 1)?;
             self.send(input as u8)?;
         }
         let shown = usize::from(steps.late).checked_rem(count).unwrap_or(0);
@@ -163,9 +252,15 @@ impl<D: SpiDevice, P: ReckOnPort> ReckOnSample<'_, D, P> {
                 state.show(&steps.outputs, answer);
             }
             state.answer = answer;
+            if steps.outputs != ReckOnOutputs::Spikes {
+                clipped = clipped.or_else(|| outputs.and_then(|outputs| outputs.clipped(answer)));
+            }
         }
         state.has_run = true;
-        Ok(state.values)
+        match clipped {
+            Some(output) => Err(ChipError::Clipped { output }),
+            None => Ok(state.values),
+        }
     }
 }
 

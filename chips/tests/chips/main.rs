@@ -13,6 +13,7 @@ mod network;
 mod reckon;
 mod reckon_pairs;
 mod reckon_pins;
+mod reckon_steps;
 mod search;
 mod steps;
 mod words;

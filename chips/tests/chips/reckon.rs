@@ -122,14 +122,8 @@ fn outputs_of_different_leaks_add_up_the_weights_of_the_neurons_that_fired() {
 
     let beyond = sample.run(&steps, &mut state, [4]);
     assert!(matches!(beyond, Err(ChipError::OutOfRange { what: "input", value: 4, .. })));
-    for (inputs, input) in [(0, 0), (300, 256)] {
-        let error = sample.run(&ReckOnSteps { inputs, ..steps }, &mut state, [input]);
-        assert!(matches!(error, Err(ChipError::OutOfRange { what: "input", .. })), "{inputs}");
-    }
-    for ticks in [&[][..], &[ticks[0]; 256]] {
-        let error = sample.run(&ReckOnSteps { ticks, ..steps }, &mut state, []);
-        assert!(matches!(error, Err(ChipError::OutOfRange { what: "ticks", .. })), "{error:?}");
-    }
+    let error = sample.run(&ReckOnSteps { inputs: 0, ..steps }, &mut state, [0]);
+    assert!(matches!(error, Err(ChipError::OutOfRange { what: "input", .. })));
     let (_, started) = sample.end().unwrap();
     let mut sample =
         started.program().unwrap().run(&ReckOnSettings::LABEL).unwrap().begin().unwrap();

@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use spikewire::{Event, Keyframe};
 use spikewire_cameras::{
-    format::{Dvs, EventDecoder, EventFormat, Evt2Pixels},
+    format::{Dvs, EventDecoder, EventFormat, Evt2Pixels, Evt3Pixels, Evt21Order, Evt21Pixels},
     frame::{
         FrameDecoder, FrameEncoder, Intensity, LogIntensity, PixelCode, PixelEvent, Refractory,
     },
@@ -81,6 +81,8 @@ fn formats() {
     let mut stream = Dvs::decoder();
     hide((stream.push(black_box(1)), stream.size(), stream.is_foreign()));
     format(Evt2Pixels::encoder(), Evt2Pixels::file_decoder());
+    format(Evt3Pixels::encoder(), Evt3Pixels::decoder());
+    format(Evt2Pixels::encoder(), Evt21Pixels::decoder(black_box(Evt21Order::Halves)));
 }
 
 fn format(mut encoder: impl EventFormat<PixelEvent>, mut decoder: impl EventDecoder<PixelEvent>) {

@@ -13,6 +13,7 @@ pub(crate) struct Header {
     pub min_throttle: i32,
     pub min_motor: i32,
     pub battery: i32,
+    pub counts: Counts,
     /// Fields of full frames.
     pub full: Fields,
     /// Fields of difference frames (P-frames), whose values are differences from earlier frames. Names and signs are
@@ -21,6 +22,48 @@ pub(crate) struct Header {
     pub slow: Fields,
     pub gps: Fields,
     pub home: Fields,
+}
+
+/// Number of counts of the sensors in one unit, if the header gives it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Counts {
+    /// Counts of a gyroscope in 1 °/s.
+    per_degree: Option<f64>,
+    /// Counts of an accelerometer in 1 g.
+    per_g: Option<f64>,
+}
+
+impl Counts {
+    fn parse<'a>(get: &impl Fn(&str) -> Option<&'a str>) -> Self {
+        // Ten times finer numbers, of both sensors.
+        let is_fine = get("blackbox_high_resolution").is_some_and(|value| value != "0");
+        let finer = if is_fine { 10.0 } else { 1.0 };
+        // The bits of a number of 32 bits: the size of a count in °/s. Baseflight alone writes it in radians a µs.
+        let degrees = get("gyro_scale").or_else(|| get("gyro.scale")).and_then(|value| {
+            let bits = u32::from_str_radix(value.trim_start_matches("0x"), 16).ok()?;
+            let degrees = f64::from(f32::from_bits(bits));
+            (1e-4..1e4).contains(&degrees).then_some(degrees)
+        });
+        let per_g =
+            get("acc_1G").and_then(|value| value.parse::<u32>().ok()).filter(|own| *own > 0);
+        Self {
+            per_degree: degrees.map(|degrees| finer / degrees),
+            per_g: per_g.map(|counts| finer * f64::from(counts)),
+        }
+    }
+
+    /// Returns the unit of a field of the main loop's frames; `None` if it is no sensor's or the header has no size of a
+    /// count.
+    pub(crate) fn unit(self, field: &str) -> Option<String> {
+        let (base, counts) = match field.split('[').next()? {
+            "gyroADC" | "gyroUnfilt" => ("deg/s", self.per_degree?),
+            "accSmooth" => ("g", self.per_g?),
+            _ => return None,
+        };
+        // The scale has 24 bits: more digits than these are its rounding.
+        let counts = (counts * 1e4).round() / 1e4;
+        Some(if counts == 1.0 { base.to_owned() } else { format!("{base}/{counts}") })
+    }
 }
 
 /// The fields of one kind of frame. Each vector holds one property of all fields. The items with the same index
@@ -32,6 +75,11 @@ pub(crate) struct Fields {
     pub predictors: Vec<i64>,
     pub encodings: Vec<Encoding>,
 }
+
+/// Predictor of a field whose value is the difference from the time of the last frame of the main loop.
+pub(crate) const LAST_TIME: i64 = 10;
+/// Largest number of a predictor that is known.
+const LAST_PREDICTOR: i64 = 11;
 
 /// Largest value that is used for an interval in the header. Larger values are reduced to this one. The bound applies
 /// to the `I interval`, and to the numerator and the denominator of the `P interval`.
@@ -59,7 +107,8 @@ impl Header {
         changes.names.clone_from(&full.names);
         changes.signed.clone_from(&full.signed);
         if changes.encodings.len() != full.names.len() {
-            return Err("frames of changes have other fields than those of all".to_owned());
+            let (changes, full) = (changes.encodings.len(), full.names.len());
+            return Err(format!("frames of changes have {changes} fields, full ones {full}"));
         }
         let logged = match get("P interval")
             .map(|interval| interval.split_once('/').unwrap_or(("1", interval)))
@@ -74,6 +123,7 @@ impl Header {
             min_throttle: number("minthrottle").unwrap_or(1150) as i32,
             min_motor: number("motorOutput").unwrap_or(0) as i32,
             battery: number("vbatref").unwrap_or(4095) as i32,
+            counts: Counts::parse(&get),
             full,
             changes,
             slow: fields("S")?,
@@ -104,12 +154,30 @@ impl Fields {
             text.parse::<i64>().map_err(|_| format!("`{text}` of a field is no number"))
         };
         let names: Vec<String> = list("name").map(str::to_owned).collect();
+        let field = |index: usize| match get(&format!(
+            "Field {} name",
+            if kind == "P" { "I" } else { kind }
+        )) {
+            Some(names) => names.split(',').nth(index).unwrap_or("?").trim(),
+            None => "?",
+        };
         let predictors: Vec<i64> = list("predictor").map(number).collect::<Result<_, _>>()?;
-        let encodings = list("encoding").map(|text| {
-            Encoding::of(number(text)?).ok_or_else(|| format!("encoding {text} is not known"))
+        let is_known = |predictor: &i64| (0..=LAST_PREDICTOR).contains(predictor);
+        if let Some(odd) = predictors.iter().position(|predictor| !is_known(predictor)) {
+            let (predictor, name) = (predictors[odd], field(odd));
+            return Err(format!(
+                "predictor {predictor} of field `{name}` in frames {kind} is not known"
+            ));
+        }
+        let encodings = list("encoding").enumerate().map(|(index, text)| {
+            let unknown = || {
+                format!("encoding {text} of field `{}` in frames {kind} is not known", field(index))
+            };
+            Encoding::of(number(text)?).ok_or_else(unknown)
         });
         let encodings: Vec<Encoding> = encodings.collect::<Result<_, _>>()?;
         let signed: Vec<bool> = list("signed").map(|text| text == "1").collect();
+        let counts = [names.len(), signed.len(), predictors.len(), encodings.len()];
         let count = encodings.len();
         let is_same = |other: usize| other == count || (kind == "P" && other == 0);
         if predictors.len() != count
@@ -117,7 +185,11 @@ impl Fields {
             || !is_same(signed.len())
             || count > MOST
         {
-            return Err(format!("fields {kind} differ in number from line to line"));
+            let [names, signed, predictors, encodings] = counts;
+            return Err(format!(
+                "fields {kind} differ in number from line to line: {names} names, {signed} signs, {predictors} \
+                 predictors, {encodings} encodings"
+            ));
         }
         Ok(Self { names, signed, predictors, encodings })
     }
@@ -125,6 +197,11 @@ impl Fields {
     /// Returns the index of the field `name`.
     pub(crate) fn index(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|field| field == name)
+    }
+
+    /// Returns whether a field holds the difference from the time of the last frame of the main loop.
+    pub(crate) fn is_relative(&self, index: usize) -> bool {
+        self.predictors.get(index) == Some(&LAST_TIME)
     }
 
     /// Returns the text of a message definition in which each field is an `int64`. Fields `name[0]`, `name[1]` and so
@@ -153,7 +230,29 @@ impl Fields {
 
 #[cfg(test)]
 mod tests {
-    use super::{Fields, Header};
+    use super::{Counts, Fields, Header};
+
+    #[test]
+    fn units_are_those_of_the_head() {
+        let unit = |lines: &[(&str, &str)], field: &str| {
+            let get =
+                |key: &str| lines.iter().find(|(own, _)| *own == key).map(|(_, value)| *value);
+            Counts::parse(&get).unit(field).unwrap_or_default()
+        };
+        let betaflight = [("gyro_scale", "0x3f800000"), ("acc_1G", "2048")];
+        assert_eq!(unit(&betaflight, "gyroADC[0]"), "deg/s");
+        assert_eq!(unit(&betaflight, "accSmooth[2]"), "g/2048");
+        assert_eq!(unit(&betaflight, "motor[0]"), "");
+        assert_eq!(unit(&[], "gyroADC[0]"), "");
+        let fine =
+            [("gyro_scale", "0x3f800000"), ("acc_1G", "2048"), ("blackbox_high_resolution", "1")];
+        assert_eq!(unit(&fine, "gyroUnfilt[1]"), "deg/s/10");
+        assert_eq!(unit(&fine, "accSmooth[0]"), "g/20480");
+        // 16.4 counts in 1 °/s, as older firmware has them.
+        let counts = [("gyro_scale", "3d79c190"), ("acc_1G", "0")];
+        assert_eq!(unit(&counts, "gyroADC[0]"), "deg/s/16.4");
+        assert_eq!(unit(&counts, "accSmooth[0]"), "");
+    }
 
     #[test]
     fn arrays_are_joined() {
@@ -183,6 +282,9 @@ mod tests {
         lines.push(line("P interval", "1"));
         assert_eq!(Header::parse(&lines).unwrap().skipped(0), 0);
         lines.push(line("Field I encoding", "5"));
-        assert_eq!(Header::parse(&lines).unwrap_err(), "encoding 5 is not known");
+        assert_eq!(
+            Header::parse(&lines).unwrap_err(),
+            "encoding 5 of field `loopIteration` in frames I is not known"
+        );
     }
 }

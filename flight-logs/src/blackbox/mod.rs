@@ -16,11 +16,18 @@ use super::window::{AHEAD, Window};
 use super::{Entry, Log};
 use crate::{Error, Result};
 use encoding::{Fault, Input};
-use header::{Fields, Header};
+use header::{Counts, Fields, Header};
+use std::collections::VecDeque;
 use std::path::Path;
 
 /// First bytes of a blackbox log.
 pub(crate) const START: &[u8] = b"H Product:Blackbox";
+
+/// Returns the offset of the first log within the first bytes of a file. Programs that fetch logs from a controller may
+/// write other bytes before it.
+pub(crate) fn start(bytes: &[u8]) -> Option<usize> {
+    bytes.windows(START.len()).position(|window| window == START)
+}
 
 /// Name of the topic with the frames of the main loop.
 pub(crate) const MAIN: &str = "main";
@@ -37,9 +44,23 @@ pub(crate) struct Blackbox {
     logs: usize,
     session: Option<Session>,
     topics: Vec<Topic>,
+    /// The sensors' counts of the log that each topic is of.
+    counts: Vec<Counts>,
     message: Vec<u8>,
+    /// Messages that are decoded, and are to be returned before any further frame is read.
+    decoded: VecDeque<Message>,
     /// Offset of the first byte of the range that is being skipped as damaged.
     damaged: Option<u64>,
+}
+
+/// The numbers of a frame, and what its entry needs.
+struct Message {
+    topic: usize,
+    /// Time in µs.
+    time: i64,
+    /// Offset of the frame in the file.
+    at: u64,
+    numbers: Vec<i64>,
 }
 
 /// State of decoding one of the logs in a file.
@@ -55,6 +76,12 @@ struct Session {
     home: Vec<i32>,
     /// Number of the loop iteration, and time in µs, of the last good frame.
     last: Option<(i64, i64)>,
+    /// Time in µs from the good frame before to the last one.
+    step: i64,
+    /// Messages before the first frame of the main loop. They have no time yet, and get that of this frame.
+    early: Vec<Message>,
+    /// Full frames that are no frames for what follows them, as long as there is no good frame.
+    odd: OddFrames,
     /// Number of the loop iteration, and time in µs, of a full frame that is too far from the last good frame. The next
     /// full frame confirms or refutes this iteration and time.
     doubted: Option<(i64, i64)>,
@@ -66,10 +93,40 @@ struct Session {
 
 /// A decoded frame.
 enum Frame {
-    Message { topic: usize, time: i64, numbers: Vec<i64> },
+    /// A frame of the main loop.
+    Main(MainFrame),
+    /// A frame of another topic. It has no time if no frame of the main loop has been read.
+    Message {
+        topic: usize,
+        time: Option<i64>,
+        numbers: Vec<i64>,
+    },
     Other,
     End,
 }
+
+/// A frame of the main loop that follows the frames before it.
+struct MainFrame {
+    is_full: bool,
+    frame: Vec<i32>,
+    numbers: Vec<i64>,
+    iteration: i64,
+    /// Time in µs.
+    time: i64,
+}
+
+/// Full frames behind which no frame begins.
+#[derive(Default)]
+struct OddFrames {
+    count: u64,
+    /// Time in µs of the latest.
+    time: Option<i64>,
+    /// Number of these frames behind which a frame begins if they have 1, 2 and so on fields more than the header names.
+    longer: [u64; MOST_LOST],
+}
+
+/// Largest number of fields whose loss from a header is recognised.
+const MOST_LOST: usize = 4;
 
 impl Blackbox {
     pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
@@ -79,7 +136,9 @@ impl Blackbox {
             logs: 0,
             session: None,
             topics: Vec::new(),
+            counts: Vec::new(),
             message: Vec::new(),
+            decoded: VecDeque::new(),
             damaged: None,
         })
     }
@@ -87,6 +146,11 @@ impl Blackbox {
     /// Reads the header of a log, and adds the log's topics. An invalid header is counted as damage.
     fn head(&mut self) -> Result<()> {
         let offset = self.window.offset();
+        if self.logs == 0 && offset > 0 {
+            self.faults
+                .note(format!("the log begins at byte {offset}; what is before it is not read"));
+        }
+        self.end_session();
         let mut lines = Vec::new();
         loop {
             self.window.fill(&mut self.faults)?;
@@ -118,6 +182,7 @@ impl Blackbox {
             let definition = fields.definition();
             let topic = Topic::new(name(base), String::new(), Dialect::Ros1, &definition);
             self.topics.push(topic);
+            self.counts.push(header.counts);
             self.topics.len() - 1
         };
         let main = add(MAIN, &header.full);
@@ -136,6 +201,9 @@ impl Blackbox {
             previous: None,
             home: Vec::new(),
             last: None,
+            step: 0,
+            early: Vec::new(),
+            odd: OddFrames::default(),
             doubted: None,
             iteration,
             time,
@@ -143,19 +211,37 @@ impl Blackbox {
         Ok(())
     }
 
+    /// Ends the log that is being decoded, if there is one. Returns its messages that never got a time.
+    fn end_session(&mut self) {
+        let Some(mut session) = self.session.take() else { return };
+        session.stamp(session.odd.time.unwrap_or_default(), &mut self.decoded);
+        if let Some(note) = session.lost_field() {
+            self.faults.note(note);
+        }
+    }
+
     /// Decodes the next frame. A byte that cannot begin a frame is skipped as damage.
-    fn frame(&mut self) -> Result<Option<Entry>> {
+    fn frame(&mut self) -> Result<()> {
         let offset = self.window.offset();
         let Some(session) = &mut self.session else {
             self.window.pass(1);
-            return Ok(None);
+            return Ok(());
         };
         let left = self.window.left();
         let mut input = Input { bytes: left, at: 0 };
         let frame = session.frame(&mut input).and_then(|frame| {
-            // A frame counts only if another frame or the end follows it.
-            let is_followed = left.get(input.at).is_none_or(|next| KINDS.contains(next));
-            if is_followed || matches!(frame, Frame::End) { Ok(frame) } else { Err(Fault::Odd) }
+            let is_last = self.window.blank(input.at).is_some();
+            let is_good = matches!(frame, Frame::End)
+                || is_last
+                || begins(&left[input.at..])
+                || session.is_before_damage(&frame, &left[..input.at], left);
+            if is_good {
+                return Ok(frame);
+            }
+            if let Frame::Main(frame) = frame {
+                session.count_odd(&frame, &left[input.at..]);
+            }
+            Err(Fault::Odd)
         });
         let taken = input.at;
         if frame.is_ok()
@@ -164,17 +250,27 @@ impl Blackbox {
             self.faults.lose(damaged, format!("{} bytes are no frames", offset - damaged));
         }
         match frame {
+            Ok(Frame::Main(frame)) => {
+                self.window.pass(taken);
+                session.stamp(frame.time, &mut self.decoded);
+                let (topic, time) = (session.main, frame.time);
+                let numbers = session.follow(frame);
+                self.decoded.push_back(Message { topic, time, at: offset, numbers });
+            }
             Ok(Frame::Message { topic, time, numbers }) => {
                 self.window.pass(taken);
-                self.message.clear();
-                self.message.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
-                let time = time.saturating_mul(1000);
-                return Ok(Some(Entry { topic, time, at: offset, sequence: None }));
+                let known = time.or(session.odd.time);
+                let message = Message { topic, time: known.unwrap_or(0), at: offset, numbers };
+                if known.is_some() {
+                    self.decoded.push_back(message);
+                } else {
+                    session.early.push(message);
+                }
             }
             Ok(Frame::Other) => self.window.pass(taken),
             Ok(Frame::End) => {
                 self.window.pass(taken);
-                self.session = None;
+                self.end_session();
             }
             Err(Fault::End) if self.window.is_at_end() && self.damaged.is_none() => {
                 self.window.pass(AHEAD);
@@ -186,8 +282,13 @@ impl Blackbox {
                 self.window.pass(1);
             }
         }
-        Ok(None)
+        Ok(())
     }
+}
+
+/// Returns whether a frame can begin with these bytes, or there are none.
+fn begins(bytes: &[u8]) -> bool {
+    bytes.first().is_none_or(|first| KINDS.contains(first))
 }
 
 /// First bytes of frames, one for each kind of frame: full frame (`I`), difference frame (`P`), slowly changing values
@@ -208,14 +309,20 @@ impl Session {
             b'S' => {
                 let frame = self.numbers(&self.header.slow, false, input)?;
                 let numbers = self.header.slow.widened(&frame);
-                let time = self.last.map_or(0, |(_, time)| time);
+                let time = self.last.map(|(_, time)| time);
                 Ok(self.slow.map_or(Frame::Other, |topic| Frame::Message { topic, time, numbers }))
             }
             b'G' => {
                 let frame = self.numbers(&self.header.gps, false, input)?;
                 let numbers = self.header.gps.widened(&frame);
-                let logged = self.header.gps.index("time").and_then(|index| numbers.get(index));
-                let time = logged.copied().or(self.last.map(|(_, time)| time)).unwrap_or_default();
+                let last = self.last.map(|(_, time)| time);
+                // A time that is a difference from the last frame is known with this frame.
+                let time = match self.header.gps.index("time") {
+                    Some(index) if last.is_some() || !self.header.gps.is_relative(index) => {
+                        numbers.get(index).copied().or(last)
+                    }
+                    _ => last,
+                };
                 Ok(self.gps.map_or(Frame::Other, |topic| Frame::Message { topic, time, numbers }))
             }
             b'H' => {
@@ -227,7 +334,7 @@ impl Session {
         }
     }
 
-    /// Turns a frame of the main loop into a message. Keeps the frame for the prediction of later frames.
+    /// Turns a frame of the main loop into a message.
     ///
     /// A frame continues another frame if its time and its loop iteration are not lower, and are higher by less than
     /// [`LONGEST_JUMP`]. A frame is good if it continues the last good frame, or if there is none yet. A full frame that
@@ -256,13 +363,97 @@ impl Session {
             }
         }
         numbers[self.time] = time;
+        Ok(Frame::Main(MainFrame { is_full, frame, numbers, iteration, time }))
+    }
+
+    /// Takes a good frame of the main loop as the last one, and keeps it for the prediction of later frames. Returns its
+    /// numbers.
+    fn follow(
+        &mut self,
+        MainFrame { is_full, frame, numbers, iteration, time }: MainFrame,
+    ) -> Vec<i64> {
+        self.step = self.last.map_or(0, |(_, last)| time - last);
         self.last = Some((iteration, time));
         self.doubted = None;
         self.previous = Some(match self.previous.take() {
             Some([previous, _]) if !is_full => [frame, previous],
             _ => [frame.clone(), frame],
         });
-        Ok(Frame::Message { topic: self.main, time, numbers })
+        numbers
+    }
+
+    /// Gives the messages before the first frame of the main loop the time of this frame, and moves them to `decoded`.
+    fn stamp(&mut self, time: i64, decoded: &mut VecDeque<Message>) {
+        let relative =
+            self.header.gps.index("time").filter(|time| self.header.gps.is_relative(*time));
+        for mut message in self.early.drain(..) {
+            message.time = time;
+            if let Some(index) = relative.filter(|_| Some(message.topic) == self.gps) {
+                message.numbers[index] = message.numbers[index].saturating_add(time);
+                message.time = message.numbers[index];
+            }
+            decoded.push_back(message);
+        }
+    }
+
+    /// Returns whether a frame of the main loop is good although no frame begins behind it: the damaged bytes are behind
+    /// it if its time fits the last two frames, and if no frames begin within it. A frame of which bytes are missing
+    /// extends into the next one. `taken` holds the bytes of the frame, `left` these and the bytes behind them.
+    fn is_before_damage(&self, frame: &Frame, taken: &[u8], left: &[u8]) -> bool {
+        const LATE: i64 = 4;
+        const ENOUGH: usize = 2;
+        let (Frame::Main(frame), Some((_, last))) = (frame, self.last) else { return false };
+        let is_soon = (1..=self.step.saturating_mul(LATE)).contains(&(frame.time - last));
+        let is_within = |start: usize| {
+            let mut input = Input { bytes: left, at: start };
+            (0..ENOUGH).all(|_| self.pass(&mut input).is_ok() && begins(&left[input.at..]))
+        };
+        is_soon && !(1..taken.len()).any(is_within)
+    }
+
+    /// Reads past a frame, whatever its values are.
+    fn pass(&self, input: &mut Input<'_>) -> Result<(), Fault> {
+        let fields = match input.byte()? {
+            b'I' => &self.header.full,
+            b'P' => &self.header.changes,
+            b'S' => &self.header.slow,
+            b'G' => &self.header.gps,
+            b'H' => &self.header.home,
+            // An event is too short to tell.
+            _ => return Err(Fault::Odd),
+        };
+        fields.read(self.header.version, input).map(drop)
+    }
+
+    /// Counts a full frame behind which no frame begins, as long as there is no good frame; `behind` are the bytes
+    /// behind it.
+    fn count_odd(&mut self, frame: &MainFrame, behind: &[u8]) {
+        if self.last.is_some() || !frame.is_full {
+            return;
+        }
+        self.odd.count += 1;
+        self.odd.time = Some(frame.time);
+        let mut input = Input { bytes: behind, at: 0 };
+        for longer in &mut self.odd.longer {
+            if input.unsigned().is_err() {
+                return;
+            }
+            if begins(&behind[input.at..]) {
+                *longer += 1;
+                return;
+            }
+        }
+    }
+
+    /// Returns a note if no frame is good, but most full frames would be if they had more fields than the header names.
+    fn lost_field(&self) -> Option<String> {
+        let most = self.odd.longer.iter().position(|count| count * 2 > self.odd.count)?;
+        let last = self.header.full.names.last().filter(|_| self.last.is_none())?;
+        let fields = if most == 0 { "1 field".to_owned() } else { format!("{} fields", most + 1) };
+        Some(format!(
+            "no frame of the main loop can be read: the frames have {fields} more than the header names, perhaps \
+             behind `{last}`"
+        ))
     }
 
     /// Decodes the values of a frame. Each field holds the difference between its value and a prediction. Set
@@ -281,41 +472,37 @@ impl Session {
             (_, false) => &none,
         };
         let mut frame: Vec<i32> = Vec::with_capacity(fields.encodings.len());
-        while let Some(&encoding) = fields.encodings.get(frame.len()) {
-            let same = fields.encodings[frame.len()..].iter().take_while(|next| **next == encoding);
-            let count = encoding.group(same.count());
-            let packed = input.numbers(encoding, count, self.header.version)?;
-            for number in packed.into_iter().take(count) {
-                let index = frame.len();
-                let Some(&predictor) = fields.predictors.get(index) else { break };
-                let past = |frame: &Vec<i32>| frame.get(index).copied().unwrap_or_default();
-                let (one, two) = (past(&before[0]), past(&before[1]));
-                let predicted = match predictor {
-                    0 => 0,
-                    1 => one,
-                    2 => one.wrapping_mul(2).wrapping_sub(two),
-                    3 => i64::midpoint(one.into(), two.into()) as i32,
-                    4 => self.header.min_throttle,
-                    5 => self
-                        .header
-                        .full
-                        .index("motor[0]")
-                        .and_then(|motor| frame.get(motor).copied())
-                        .unwrap_or_default(),
-                    6 => one.wrapping_add(1).wrapping_add(self.header.skipped(one.into()) as i32),
-                    7 => {
-                        // Of two neighbouring fields with this predictor, the second is the longitude.
-                        let is_second = index > 0 && fields.predictors[index - 1] == 7;
-                        self.home.get(usize::from(is_second)).copied().unwrap_or_default()
-                    }
-                    8 => 1500,
-                    9 => self.header.battery,
-                    10 => self.last.map_or(0, |(_, time)| time as i32),
-                    11 => self.header.min_motor,
-                    _ => return Err(Fault::Odd),
-                };
-                frame.push(number.wrapping_add(predicted));
-            }
+        for (number, &predictor) in
+            fields.read(self.header.version, input)?.into_iter().zip(&fields.predictors)
+        {
+            let index = frame.len();
+            let past = |frame: &Vec<i32>| frame.get(index).copied().unwrap_or_default();
+            let (one, two) = (past(&before[0]), past(&before[1]));
+            let predicted = match predictor {
+                0 => 0,
+                1 => one,
+                2 => one.wrapping_mul(2).wrapping_sub(two),
+                3 => i64::midpoint(one.into(), two.into()) as i32,
+                4 => self.header.min_throttle,
+                5 => self
+                    .header
+                    .full
+                    .index("motor[0]")
+                    .and_then(|motor| frame.get(motor).copied())
+                    .unwrap_or_default(),
+                6 => one.wrapping_add(1).wrapping_add(self.header.skipped(one.into()) as i32),
+                7 => {
+                    // Of two neighbouring fields with this predictor, the second is the longitude.
+                    let is_second = index > 0 && fields.predictors[index - 1] == 7;
+                    self.home.get(usize::from(is_second)).copied().unwrap_or_default()
+                }
+                8 => 1500,
+                9 => self.header.battery,
+                header::LAST_TIME => self.last.map_or(0, |(_, time)| time as i32),
+                11 => self.header.min_motor,
+                _ => return Err(Fault::Odd),
+            };
+            frame.push(number.wrapping_add(predicted));
         }
         Ok(frame)
     }
@@ -356,6 +543,20 @@ impl Session {
 }
 
 impl Fields {
+    /// Reads the numbers of a frame as they are stored, before any prediction is added.
+    fn read(&self, version: i64, input: &mut Input<'_>) -> Result<Vec<i32>, Fault> {
+        let mut numbers: Vec<i32> = Vec::with_capacity(self.encodings.len());
+        while let Some(&encoding) = self.encodings.get(numbers.len()) {
+            let same = self.encodings[numbers.len()..].iter().take_while(|next| **next == encoding);
+            let count = encoding.group(same.count());
+            let packed = input.numbers(encoding, count, version)?;
+            // A group may be longer than the fields that are left.
+            let count = count.min(self.encodings.len() - numbers.len());
+            numbers.extend(&packed[..count]);
+        }
+        Ok(numbers)
+    }
+
     /// Converts the values of a frame to 64 bits. The value of an unsigned field is converted by way of `u32`, and is
     /// therefore never negative.
     fn widened(&self, frame: &[i32]) -> Vec<i64> {
@@ -369,14 +570,30 @@ impl Fields {
 impl Log for Blackbox {
     fn next(&mut self) -> Result<Option<Entry>> {
         loop {
+            if let Some(Message { topic, time, at, numbers }) = self.decoded.pop_front() {
+                self.message.clear();
+                self.message.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+                let time = time.saturating_mul(1000);
+                return Ok(Some(Entry { topic, time, at, sequence: None }));
+            }
             self.window.fill(&mut self.faults)?;
+            if self.window.pass_blank(0) {
+                continue;
+            }
+            let blank = self.window.end_blank();
             if self.window.left().is_empty() {
+                let end = self.window.offset();
+                if let Some(blank) = blank {
+                    self.faults.blank(blank, end - blank);
+                }
                 if let Some(damaged) = self.damaged.take() {
-                    let what = format!("{} bytes are no frames", self.window.offset() - damaged);
+                    let what = format!("{} bytes are no frames", blank.unwrap_or(end) - damaged);
                     self.faults.lose(damaged, what);
                 }
-                if self.session.take().is_some() {
+                if self.session.is_some() {
                     self.faults.note("the log has no end, as when power is cut".to_owned());
+                    self.end_session();
+                    continue;
                 }
                 if self.logs == 0 {
                     return Err(Error::not_a_log(
@@ -386,13 +603,16 @@ impl Log for Blackbox {
                 }
                 return Ok(None);
             }
+            if let Some(session) = &mut self.session
+                && let Some(blank) = blank
+            {
+                session.previous = None;
+                self.damaged.get_or_insert(blank);
+            }
             if self.window.left().starts_with(START) {
                 self.head()?;
-                continue;
-            }
-            let entry = self.frame()?;
-            if entry.is_some() {
-                return Ok(entry);
+            } else {
+                self.frame()?;
             }
         }
     }
@@ -403,6 +623,10 @@ impl Log for Blackbox {
 
     fn message(&self) -> &[u8] {
         &self.message
+    }
+
+    fn unit(&self, topic: usize, field: &str) -> Option<String> {
+        self.counts.get(topic)?.unit(field)
     }
 
     fn faults(&mut self) -> &mut Faults {

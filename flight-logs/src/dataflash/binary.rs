@@ -37,6 +37,27 @@ enum Ahead {
     Odd,
 }
 
+/// Returns whether bytes begin with the head of a message, as far as there are bytes.
+fn begins(bytes: &[u8]) -> bool {
+    bytes.iter().zip(HEAD).all(|(byte, head)| byte == head)
+}
+
+/// Returns whether the first bytes of a file hold a message that defines a format, with which every log begins.
+/// Usually the first such message defines `FMT` itself, but its format is fixed and needs no definition.
+pub(crate) fn is_log(start: &[u8]) -> bool {
+    /// Length of the content of an `FMT` message.
+    const LENGTH: usize = 86;
+    start.windows(CONTENT + LENGTH).enumerate().any(|(at, message)| {
+        message.starts_with(HEAD)
+            && message[HEAD.len()] == FMT
+            && begins(&start[at + message.len()..])
+            && matches!(
+                Defined::of_format(&message[CONTENT..]),
+                Some(Defined::Format(_, format)) if format.columns.is_ok()
+            )
+    })
+}
+
 impl Binary {
     pub(crate) fn open(path: &Path, faults: Faults) -> Result<Self> {
         Ok(Self {
@@ -49,11 +70,11 @@ impl Binary {
         })
     }
 
-    /// Classifies the next bytes. Bytes count as a message only if another message or the end of the file follows them,
-    /// because a message with missing bytes would otherwise be accepted.
+    /// Classifies the next bytes. Bytes count as a message if another message, blank bytes or the end of the file follow
+    /// them. They also count if damaged bytes follow, unless a message begins within them: a message of which bytes are
+    /// missing extends into the next one.
     fn look(&self) -> Ahead {
         let left = self.window.left();
-        let begins = |bytes: &[u8]| bytes.iter().zip(HEAD).all(|(byte, head)| byte == head);
         if !begins(left) {
             return Ahead::Odd;
         }
@@ -61,9 +82,20 @@ impl Binary {
         let Some(format) = self.formats.get(kind) else { return Ahead::Odd };
         match left.get(format.length..) {
             None => Ahead::Cut,
-            Some(next) if begins(next) => Ahead::Message(kind, format.length),
-            Some(_) => Ahead::Odd,
+            Some(next) if begins(next) || self.window.blank(format.length).is_some() => {
+                Ahead::Message(kind, format.length)
+            }
+            Some(_) if (CONTENT..format.length).any(|at| self.is_whole(at)) => Ahead::Odd,
+            Some(_) => Ahead::Message(kind, format.length),
         }
+    }
+
+    /// Returns whether a message of a known kind begins at this index of the window, and another one follows it.
+    fn is_whole(&self, at: usize) -> bool {
+        let next = self.window.left().get(at..).unwrap_or_default();
+        let format = next.get(HEAD.len()).and_then(|kind| self.formats.get(*kind));
+        let behind = format.and_then(|format| next.get(format.length..));
+        begins(next) && behind.is_some_and(begins)
     }
 
     /// Processes the next message, which has type `kind`, and returns its entry. Stores the definition if the message
@@ -108,9 +140,11 @@ impl Binary {
         Ok(topic.map(|topic| Entry { topic, time: self.time, at, sequence: None }))
     }
 
-    /// Counts the range of damaged bytes that ends at the current position, if there is one.
+    /// Counts the range of damaged bytes that ends at the current position, if there is one. Blank bytes before another
+    /// message are damage, too: they stand in the place of messages.
     fn end_damage(&mut self) -> Result<()> {
-        match self.damaged.take() {
+        let blank = self.window.end_blank();
+        match self.damaged.take().or(blank) {
             None => Ok(()),
             Some(damaged) => {
                 let count = self.window.offset() - damaged;
@@ -211,7 +245,13 @@ impl Log for Binary {
     fn next(&mut self) -> Result<Option<Entry>> {
         loop {
             self.window.fill(&mut self.faults)?;
+            if self.window.pass_blank(0) {
+                continue;
+            }
             if self.window.left().is_empty() {
+                if let Some(blank) = self.window.end_blank() {
+                    self.faults.blank(blank, self.window.offset() - blank);
+                }
                 self.end_damage()?;
                 return Ok(None);
             }
@@ -228,7 +268,8 @@ impl Log for Binary {
                     self.faults.end(offset, "the log ends within a message")?;
                 }
                 Ahead::Cut | Ahead::Odd => {
-                    self.damaged.get_or_insert(self.window.offset());
+                    let blank = self.window.end_blank();
+                    self.damaged.get_or_insert(blank.unwrap_or(self.window.offset()));
                     let mut behind = self.window.left().iter().skip(1);
                     let next = behind.position(|byte| *byte == HEAD[0]);
                     self.window.pass(next.map_or(usize::MAX, |next| next + 1));

@@ -154,13 +154,15 @@ fn columns(length: usize, letters: &str, names: &str) -> Result<Vec<Column>, Str
 
 /// Returns the index of the column with the time since boot, and the length of the column's time unit in ns. This
 /// column is the first one if its name is `TimeUS` or `TimeMS`. In other `GPS` and `GPS2` messages, it is the column
-/// `T`; a later column `TimeMS` has the satellites' time there. Returns `None` if there is no column with the time.
+/// `T`; a later column `TimeMS` has the satellites' time there. In messages `TIME` of sdlog2, it is `StartTime`. Returns `None` if there is no column with the time.
 fn time(name: &str, columns: &[Column]) -> Option<(usize, i64)> {
     const MICROSECOND: i64 = 1_000;
     const MILLISECOND: i64 = 1_000_000;
     match columns.first()?.name.as_str() {
         "TimeUS" => Some((0, MICROSECOND)),
         "TimeMS" => Some((0, MILLISECOND)),
+        // The logger sdlog2 of early PX4 writes the time as a message of its own.
+        "StartTime" if name == "TIME" => Some((0, MICROSECOND)),
         _ if matches!(name, "GPS" | "GPS2") => {
             let index = columns.iter().position(|column| column.name == "T")?;
             Some((index, MILLISECOND))

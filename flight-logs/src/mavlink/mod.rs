@@ -2,9 +2,10 @@
 //! arrival.
 //!
 //! Every type of common message is a topic. Messages of the same type from a second sender are on a topic of their own,
-//! such as `ATTITUDE:1`. Packets of other types are skipped.
+//! such as `ATTITUDE:1`. Packets of other types are skipped, and counted by their names.
 
 mod messages;
+mod names;
 
 use crate::bytes::Bytes;
 use crate::faults::Faults;
@@ -13,7 +14,7 @@ use crate::window::Window;
 use crate::wire::Wire;
 use crate::{Entry, Log, Result};
 use messages::{Checksum, Message};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 /// Length in bytes of the time stamp before each packet: µs since 1970, big-endian.
@@ -27,8 +28,10 @@ pub(crate) struct Mavlink {
     /// Index in `topics` for each message number and sender. A sender is given by its system and its component.
     senders: HashMap<(u32, [u8; 2]), usize>,
     message: Vec<u8>,
-    /// Number of packets skipped because their messages are unknown.
-    unknown: u64,
+    /// Number of packets skipped because the layout of their messages is unknown, by message number.
+    unknown: BTreeMap<u32, u64>,
+    /// Number of packets whose time stamp is 0.
+    unstamped: u64,
     /// Offset of the first byte of the range that is being skipped as damaged.
     damaged: Option<u64>,
 }
@@ -92,14 +95,19 @@ impl Packet<'_> {
     /// If its message is unknown, the checksum cannot be calculated; instead, another packet must follow.
     fn is_good(&self, left: &[u8]) -> bool {
         match Message::of(self.number) {
-            Some(message) => {
-                let mut checksum = Checksum::default();
-                checksum.take(self.checked);
-                checksum.take(&[message.extra]);
-                checksum.0 == self.checksum
-            }
+            Some(_) => self.is_checked(),
             None => is_followed(&left[self.length..]),
         }
+    }
+
+    /// Returns whether the packet's message is known, and its checksum right.
+    fn is_checked(&self) -> bool {
+        Message::of(self.number).is_some_and(|message| {
+            let mut checksum = Checksum::default();
+            checksum.take(self.checked);
+            checksum.take(&[message.extra]);
+            checksum.0 == self.checksum
+        })
     }
 }
 
@@ -110,17 +118,31 @@ fn is_followed(next: &[u8]) -> bool {
 }
 
 /// Returns whether these are the first bytes of a telemetry log: a packet from the years 2000 to 2100, followed by
-/// another packet.
+/// another packet, or packets with other times or behind other bytes whose checksums are right.
 pub(crate) fn is_log(start: &[u8]) -> bool {
     const YEARS: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_000;
-    match look(start) {
+    let is_dated = match look(start) {
         Ahead::Packet(packet) => {
             YEARS.contains(&packet.microseconds)
                 && (packet.is_good(start) || Message::of(packet.number).is_some())
                 && is_followed(&start[packet.length..])
         }
         Ahead::Cut | Ahead::Odd => false,
+    };
+    is_dated || (0..start.len()).any(|at| are_checked(&start[at..]))
+}
+
+/// Returns whether the bytes begin with two packets of known messages whose checksums are right. One in 2^32 places of
+/// other files does so by chance.
+fn are_checked(mut bytes: &[u8]) -> bool {
+    const ENOUGH: usize = 2;
+    for _ in 0..ENOUGH {
+        match look(bytes) {
+            Ahead::Packet(packet) if packet.is_checked() => bytes = &bytes[packet.length..],
+            _ => return false,
+        }
     }
+    true
 }
 
 impl Mavlink {
@@ -131,9 +153,31 @@ impl Mavlink {
             topics: Vec::new(),
             senders: HashMap::new(),
             message: Vec::new(),
-            unknown: 0,
+            unknown: BTreeMap::new(),
+            unstamped: 0,
             damaged: None,
         })
+    }
+
+    /// Notes the packets that are not read, by their names, and those without a time.
+    fn note_skipped(&mut self) {
+        let unknown = std::mem::take(&mut self.unknown);
+        let count: u64 = unknown.values().sum();
+        if count > 0 {
+            let mut kinds: Vec<(u32, u64)> = unknown.into_iter().collect();
+            kinds.sort_by_key(|&(number, count)| (std::cmp::Reverse(count), number));
+            let names = kinds.iter().map(|&(number, count)| match names::name(number) {
+                Some(name) => format!("{count} {name}"),
+                None => format!("{count} of number {number}"),
+            });
+            let names = names.collect::<Vec<_>>().join(", ");
+            let what = "packets of messages whose layout is not known were passed over";
+            self.faults.note(format!("{count} {what}: {names}"));
+        }
+        let unstamped = std::mem::take(&mut self.unstamped);
+        if unstamped > 0 {
+            self.faults.note(format!("{unstamped} packets have the time of arrival 0"));
+        }
     }
 
     /// Reads the packet at the current position; returns `None` if no valid packet is there. The result is the packet's
@@ -144,7 +188,11 @@ impl Mavlink {
         if !packet.is_good(left) {
             return None;
         }
-        let Some(message) = Message::of(packet.number) else { return Some((packet.length, None)) };
+        self.unstamped += u64::from(packet.microseconds == 0);
+        let Some(message) = Message::of(packet.number) else {
+            *self.unknown.entry(packet.number).or_default() += 1;
+            return Some((packet.length, None));
+        };
         self.message.clear();
         self.message.extend(packet.payload);
         // Senders leave out zeros at the end, and extensions that they do not know.
@@ -172,7 +220,18 @@ impl Log for Mavlink {
         loop {
             self.window.fill(&mut self.faults)?;
             let offset = self.window.offset();
+            // The stamp of the next packet may begin with zeros.
+            if self.window.pass_blank(TIME) {
+                continue;
+            }
             let is_end = self.window.left().is_empty();
+            if let Some(blank) = self.window.end_blank() {
+                if is_end {
+                    self.faults.blank(blank, offset - blank);
+                } else {
+                    self.damaged.get_or_insert(blank);
+                }
+            }
             let taken = if is_end { None } else { self.packet() };
             if (is_end || taken.is_some())
                 && let Some(damaged) = self.damaged.take()
@@ -181,11 +240,7 @@ impl Log for Mavlink {
                 self.faults.skip(damaged, what)?;
             }
             if is_end {
-                if self.unknown > 0 {
-                    let what = "packets of messages other than the common ones were passed over";
-                    self.faults.note(format!("{} {what}", self.unknown));
-                    self.unknown = 0;
-                }
+                self.note_skipped();
                 return Ok(None);
             }
             match taken {
@@ -193,10 +248,7 @@ impl Log for Mavlink {
                     self.window.pass(length);
                     return Ok(Some(Entry { topic, time, at: offset, sequence: None }));
                 }
-                Some((length, None)) => {
-                    self.window.pass(length);
-                    self.unknown += 1;
-                }
+                Some((length, None)) => self.window.pass(length),
                 None if self.damaged.is_none()
                     && matches!(look(self.window.left()), Ahead::Cut) =>
                 {

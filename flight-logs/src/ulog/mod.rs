@@ -18,6 +18,10 @@ pub(crate) const START: &[u8] = b"ULog";
 /// Error text for a file with the extension `.ulg` that does not start as `ULog` files do.
 pub(crate) const OTHER: &str = "not a flight log; ULog files start with `ULog` and 12 bytes more";
 
+/// Error text for a log with a flag that this reader does not know, and that forbids to read the log without knowing it.
+const INCOMPATIBLE: &str = "a ULog file with an incompatible flag that is not known: it cannot be read by programs that \
+    know only the flag of appended data";
+
 /// Reader of a `ULog` file, which is held in memory.
 pub(crate) struct Ulog {
     bytes: Vec<u8>,
@@ -47,6 +51,9 @@ impl Ulog {
         if bytes.len() < HEADER || !bytes.starts_with(START) {
             return refused(ErrorKind::NotALog(OTHER.to_owned()));
         }
+        if Scan::is_incompatible(&bytes) {
+            return refused(ErrorKind::Unsupported(INCOMPATIBLE.to_owned()));
+        }
         let Scan { topics, series, messages, findings, .. } = Scan::run(&bytes);
         if faults.damage() == Damage::Refuse {
             let length = bytes.len() as u64;
@@ -57,6 +64,9 @@ impl Ulog {
             if let Some(cut) = findings.cut {
                 return refused(ErrorKind::Cut { at: cut as u64, length });
             }
+        }
+        if let Some(blank) = findings.blank {
+            faults.blank(blank as u64, (bytes.len() - blank) as u64);
         }
         findings.to_string().lines().for_each(|line| faults.note(line.to_owned()));
         Ok(Self { bytes, topics, series, messages: messages.into_iter(), present: 0..0, faults })

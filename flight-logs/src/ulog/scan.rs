@@ -22,6 +22,8 @@ pub(crate) struct Findings {
     dropouts: Dropouts,
     /// Offset in the file of the message that the end of the file cuts off, if there is one.
     pub(crate) cut: Option<usize>,
+    /// Offset in the file from which all bytes are 0, or all 0xff, if there are such bytes at its end.
+    pub(crate) blank: Option<usize>,
     /// Range of the first damage: from its first byte to the next valid message.
     pub(crate) damage: Option<Range<usize>>,
 }
@@ -129,6 +131,19 @@ impl<'a> Scan<'a> {
         scan
     }
 
+    /// Returns whether the log sets a flag that forbids to read it: one that says how the log differs from the format as
+    /// it is known here. Of those flags only that of appended data is known.
+    pub(crate) fn is_incompatible(bytes: &[u8]) -> bool {
+        let Some(&[low, high, b'B']) = bytes.get(HEADER..HEADER + 3) else { return false };
+        let length = usize::from(u16::from_le_bytes([low, high]));
+        let content = bytes.get(HEADER + 3..).unwrap_or_default();
+        let content = content.get(..length).unwrap_or(content);
+        let flags = content.get(8..16).unwrap_or_default();
+        (0..)
+            .zip(flags)
+            .any(|(place, flags)| if place == 0 { flags & !1 != 0 } else { *flags != 0 })
+    }
+
     /// Returns the offset at which PX4 appended data to the finished log, as it does after a crash. Returns `None` if
     /// nothing was appended.
     fn appended(&self) -> Option<usize> {
@@ -153,7 +168,10 @@ impl<'a> Scan<'a> {
                 self.findings.damage.get_or_insert(at..next);
                 at = next;
             } else {
-                if !may_be_cut {
+                let rest = &self.bytes[at..part.end];
+                if [0, 0xff].iter().any(|blank| rest.iter().all(|byte| byte == blank)) {
+                    self.findings.blank = Some(at);
+                } else if !may_be_cut {
                     self.findings.cut = Some(at);
                 }
                 return;

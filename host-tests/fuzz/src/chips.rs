@@ -278,8 +278,56 @@ fn family<I: Input>(
     }
 }
 
-/// Steps of any description, of a network or of none, on the chip's model, whose port fails now and then: junk never brings a
-/// chip to where it runs. A neuron fires once a step.
+/// A network of any weights, with as many neurons and rows as steps need.
+struct Weights {
+    neurons: u16,
+    rows: u16,
+    seed: u8,
+}
+
+impl Describe<TinyOdinInput> for Weights {
+    fn neurons(&self) -> u16 {
+        self.neurons
+    }
+
+    fn neuron(&self, neuron: u8) -> TinyOdinNeuron {
+        let of = |factor: u8| neuron.wrapping_mul(factor).wrapping_add(self.seed);
+        TinyOdinNeuron {
+            threshold: 1 + u16::from(of(7)),
+            leak: of(3) & 7,
+            potential: -i16::from(of(5)),
+            is_disabled: false,
+        }
+    }
+
+    fn inputs(&self) -> u16 {
+        self.rows
+    }
+
+    fn virtual_input(&self, _: u16) -> Option<(u8, i8)> {
+        None
+    }
+
+    fn input_weight(&self, input: u16, post: u8) -> i8 {
+        let bits = (input as u8).wrapping_mul(31) ^ post.wrapping_mul(17) ^ self.seed;
+        (bits & 15) as i8 - 8
+    }
+
+    fn is_recurrent(&self) -> bool {
+        false
+    }
+
+    fn weight(&self, _: u8, _: u8) -> i8 {
+        0
+    }
+
+    fn output(&self, neuron: u8) -> Option<u16> {
+        Some(neuron.into())
+    }
+}
+
+/// Steps of any description, with the network that they need if it is small, or with another one, on the chip's model, whose
+/// port fails now and then: junk never brings a chip to where it runs. A neuron fires once a step.
 fn stepped(script: &mut Script) {
     let few = |script: &mut Script| -> Vec<u16> {
         let count = script.below(6);
@@ -289,29 +337,48 @@ fn stepped(script: &mut Script) {
         .into_iter()
         .map(|neurons| StepsLayer { neurons: neurons << script.below(9), loops: neurons & 1 == 1 })
         .collect();
-    let leaks: Vec<Vec<u16>> = (0..script.below(4)).map(|_| few(script)).collect();
+    let mut leaks: Vec<Vec<u16>> = (0..script.below(4)).map(|_| few(script)).collect();
+    let rungs: u16 = script.byte().into();
+    let mut lift: u16 = script.byte().into();
+    if script.below(4) > 0 {
+        // In their range and order, as steps must have them.
+        lift %= rungs + 1;
+        leaks.iter_mut().flatten().for_each(|leak| *leak %= rungs + 1);
+        leaks.iter_mut().for_each(|list| list.sort_unstable());
+    }
     let leaks: Vec<&[u16]> = leaks.iter().map(Vec::as_slice).collect();
     let steps = Steps {
         inputs: script.byte().into(),
         has_bias: script.below(2) == 0,
         rows: &few(script),
         layers: &layers,
-        rungs: script.byte().into(),
+        rungs,
         leaks: &leaks,
-        lift: script.byte().into(),
+        lift,
         own_leaks: &few(script),
     };
     assert!(steps.first_rise() <= steps.all_rows(), "rows behind those of the sources");
-    let registers = TinyOdinRegisters {
-        is_open_loop: true,
-        output_source: OutputSource::Neurons,
-        last_neuron: script.byte() & 31,
+    let neurons = steps
+        .layers
+        .iter()
+        .fold(script.below(2) as u16, |sum, layer| sum.saturating_add(layer.neurons));
+    let (neurons, rows, seed) = (neurons.clamp(1, 40), steps.all_rows().min(60), script.byte());
+    let network = Weights { neurons, rows, seed };
+    let registers = if script.below(8) > 0 {
+        network.registers()
+    } else {
+        TinyOdinRegisters {
+            is_open_loop: true,
+            output_source: OutputSource::Neurons,
+            last_neuron: script.byte() & 31,
+        }
     };
     let recording = [few(script), few(script), few(script)];
 
     let board = Board::<silicon::TinyOdin>::new(4, 1);
     let mut chip = TinyOdin::new(board.spi(), board.port(), TinyOdinInput::MAX_CLOCKS);
-    let gated = chip.reset(&mut board.clone()).expect("a chip that is reset");
+    let mut gated = chip.reset(&mut board.clone()).expect("a chip that is reset");
+    gated.load(&network, |_| ()).expect("a network that fits");
     let mut running = gated.run(&registers).expect("a chip that runs");
     let now = board.pins().calls;
     let fault = if script.below(2) == 0 { CallFault::Before } else { CallFault::After };

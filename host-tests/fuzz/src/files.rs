@@ -125,7 +125,10 @@ pub fn spikes(bytes: &[u8]) {
 
 /// Streams of events in every format that has a name.
 pub fn events(bytes: &[u8]) {
-    const FORMATS: [&str; 10] = [
+    const FORMATS: [&str; 13] = [
+        "evt2,pixels=1",
+        "evt21",
+        "evt3",
         "link",
         "edvs:e0",
         "edvs:e1",
@@ -149,8 +152,14 @@ pub fn events(bytes: &[u8]) {
     let cut_well = cut_well.and_then(|()| reader.finish(&mut items));
     // Datagrams end where they are cut; all else is a stream.
     if let (Ok(whole), Ok(()), false) = (&whole, &cut_well, name.starts_with("eieio")) {
-        let pieces = items.iter().filter(|item| matches!(item, lab::events::Item::Event(_)));
-        assert_eq!(whole.events.len(), pieces.count(), "{name}, cut into pieces of {cut}");
+        let pieces = items.iter().filter(|item| {
+            matches!(item, lab::events::Item::Event(_) | lab::events::Item::Pixel(_))
+        });
+        assert_eq!(
+            whole.events.len() + whole.pixels.len(),
+            pieces.count(),
+            "{name}, cut into pieces of {cut}"
+        );
     }
 }
 

@@ -1,8 +1,8 @@
 //! Event formats: any bytes are read or skipped, cut anywhere; what was read is written and read again.
 
 use spikewire_cameras::format::{
-    Dvs, Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, Evt2Pixels, FormatError,
-    eieio,
+    Dvs, Edvs, EdvsTime, EventDecoder, EventFormat, EventStream, Evt2, Evt2Pixels, Evt3Pixels,
+    Evt21Order, Evt21Pixels, FormatError, eieio,
 };
 
 use crate::script::Script;
@@ -10,7 +10,7 @@ use crate::script::Script;
 /// Every format, of which the first byte chooses one.
 pub fn all(bytes: &[u8]) {
     let mut script = Script::new(bytes);
-    let (kind, cut) = (script.below(12), 1 + script.below(40));
+    let (kind, cut) = (script.below(15), 1 + script.below(40));
     let bytes = script.rest();
     let edvs = |time| Edvs::new(time);
     match kind {
@@ -53,6 +53,16 @@ pub fn all(bytes: &[u8]) {
             let stream = [&camera.header()[..], bytes].concat();
             check(Dvs::decoder, camera.encoder(), &stream, cut);
             check(Dvs::decoder, camera.encoder(), bytes, cut);
+        }
+        11 => check(Evt3Pixels::decoder, Evt3Pixels::encoder(), bytes, cut),
+        // EVT 2.1 is read only: what was read is written as EVT2.
+        12 => {
+            let decoder = || Evt21Pixels::decoder(Evt21Order::Little);
+            check(decoder, Evt2Pixels::encoder(), bytes, cut);
+        }
+        13 => {
+            let decoder = || Evt21Pixels::decoder(Evt21Order::Halves);
+            check(decoder, Evt2Pixels::encoder(), bytes, cut);
         }
         _ => datagram(bytes),
     }

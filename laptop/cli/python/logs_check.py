@@ -131,7 +131,7 @@ def decoded(log, mcap):
 
 def read(spikewire, log, topic, fields, output):
     """By spikewire, out of the messages that it wrote: times in µs and values of all fields."""
-    command = [spikewire, "encode", "--scheme", "sf", "--threshold", "1", "--topic", topic]
+    command = [spikewire, "encode", "--scheme", "sf", "--threshold", "1", "--time", "recorded", "--topic", topic]
     subprocess.run(command + ["--fields", ",".join(fields), log, "-o", output], check=True, capture_output=True)
     columns = [[] for _ in fields]
     for time, message, topic in decoded(output, Ros2()):
@@ -164,12 +164,14 @@ def ulog(spikewire, directory):
     log = flight_log()
     info = subprocess.run([spikewire, "info", log], check=True, stdout=subprocess.PIPE, text=True).stdout
     own = {name: (int(count), time) for name, count, time in re.findall(r"^(\S+): (\d+) samples(?:, ([0-9.]+) s)?", info, re.M)}
+    stamped = re.findall(r"^(\S+): [^\n]*(?:\n  [^\n]*)*?\n  times are the sensor's own", info, re.M)
     topics, numbers = ULog(str(log)).data_list, 0
     assert len(own) == len(topics) > 100
     for topic in topics:
         name = f"{topic.name}:{topic.multi_id}" if topic.multi_id else topic.name
         times = topic.data.pop("timestamp").astype(int)
-        span = f"{(times[-1] - times[0]) / 1e6:.3f}" if len(times) > 1 else ""
+        own_times = topic.data["timestamp_sample"].astype(int) if name in stamped else times
+        span = f"{(own_times[-1] - own_times[0]) / 1e6:.3f}" if len(times) > 1 else ""
         assert own[name] == (len(times), span), (name, own[name], len(times), span)
         fields = [field for field, column in topic.data.items() if np.isfinite(column).all()]
         if len(times) >= 90 and fields:

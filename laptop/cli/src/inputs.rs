@@ -50,8 +50,9 @@ pub(crate) struct ChannelOptions {
     )]
     columns: Vec<String>,
     /// Column of a table, or field of a log such as `header.stamp`, that holds the time. Default in a table: the column
-    /// whose name means time in tables of Betaflight, `ArduPilot`, PX4, ROS or pandas; in a ROS log: the time at which
-    /// a message was recorded
+    /// whose name means time in tables of Betaflight, `ArduPilot`, PX4, ROS or pandas; in a log: the sensor's own stamp
+    /// such as `header.stamp`, `timestamp_sample` or `time_boot_ms`, and without one the time at which a message was
+    /// recorded, which is called `recorded`
     #[arg(long, value_name = "COLUMN", help_heading = "Input")]
     time: Option<String>,
     /// Unit of the time column; default: the unit in its name, such as `time (us)` or `stamp_ns`, or else a guess from
@@ -61,6 +62,9 @@ pub(crate) struct ChannelOptions {
     /// Separator of columns: `,` `;` `|` `tab` `space`; default: the one that the header uses
     #[arg(long, help_heading = "Input")]
     delimiter: Option<Delimiter>,
+    /// Line of a table that holds the names of the columns, counted from 1; default: found where it is sure
+    #[arg(long, value_name = "LINE", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Input")]
+    header: Option<u64>,
     /// Topic of a log; `:1` after it selects the second instance of a sensor
     #[arg(long, help_heading = "Input")]
     topic: Option<String>,
@@ -70,7 +74,7 @@ pub(crate) struct ChannelOptions {
     /// Several fields of the topic at once: `gyro_rad[0],gyro_rad[1]`
     #[arg(long, value_delimiter = ',', value_name = "NAMES", help_heading = "Input")]
     fields: Vec<String>,
-    /// Sample rate in Hz, for a recording without times
+    /// Sample rate in Hz, for a recording without times, or with times that do not tell it, such as those of arrival
     #[arg(long, value_parser = above_zero, help_heading = "Input")]
     rate: Option<f64>,
     /// Report time steps longer than this multiple of the usual step
@@ -142,12 +146,29 @@ impl LogList {
         if is_stdin && self.logs.contains(list) {
             bail!("standard input cannot be both the list and a log");
         }
-        let text =
-            if is_stdin { io::read_to_string(io::stdin()) } else { fs::read_to_string(list) };
-        let text = text.with_context(|| list.display().to_string())?;
-        let listed = text.lines().filter(|line| !line.trim().is_empty()).map(PathBuf::from);
+        let mut bytes = Vec::new();
+        let read = if is_stdin {
+            io::stdin().read_to_end(&mut bytes)
+        } else {
+            fs::File::open(list).and_then(|mut file| file.read_to_end(&mut bytes))
+        };
+        read.with_context(|| list.display().to_string())?;
+        let lines =
+            bytes.split(|byte| *byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
+        let listed = lines.filter(|line| !line.trim_ascii().is_empty()).map(path_of);
         Ok(self.logs.iter().cloned().chain(listed).collect())
     }
+}
+
+/// Returns the path that these bytes name. On Unix a name may have bytes that are not UTF-8.
+#[cfg(unix)]
+fn path_of(bytes: &[u8]) -> PathBuf {
+    PathBuf::from(<std::ffi::OsStr as std::os::unix::ffi::OsStrExt>::from_bytes(bytes))
+}
+
+#[cfg(not(unix))]
+fn path_of(bytes: &[u8]) -> PathBuf {
+    PathBuf::from(String::from_utf8_lossy(bytes).into_owned())
 }
 
 impl LogOptions {
@@ -193,7 +214,7 @@ impl ManyChannels {
 }
 
 /// Returns a parser of a unit of time: `s`, `ms`, `us` or `ns`.
-fn units() -> MapValueParser<PossibleValuesParser, fn(String) -> TimeUnit> {
+pub(crate) fn units() -> MapValueParser<PossibleValuesParser, fn(String) -> TimeUnit> {
     PossibleValuesParser::new(["s", "ms", "us", "ns"]).map(|name| match name.as_str() {
         "ms" => TimeUnit::Ms,
         "us" => TimeUnit::Us,
@@ -224,6 +245,7 @@ impl ChannelOptions {
             time: options.time,
             time_unit: options.time_unit,
             delimiter: options.delimiter,
+            header: options.header,
             topic: options.topic,
             field: options.field,
             fields: options.fields,

@@ -6,7 +6,7 @@ use common::{file, good_bytes, ran, refused, spikewire_bytes};
 use std::fmt::Write;
 
 /// Formats that can express any event with a 14-bit address, provided that time rises in small steps.
-const FORMATS: [&str; 12] = [
+const FORMATS: [&str; 13] = [
     "link",
     "link,period=5000,channels=6,jitter=5",
     "edvs:e1",
@@ -17,6 +17,7 @@ const FORMATS: [&str; 12] = [
     "edvs:e4,up=0",
     "es",
     "evt2",
+    "evt3",
     "eieio,base=9,step=1,signed=1",
     "csv",
 ];
@@ -121,12 +122,113 @@ fn a_long_silence_takes_bytes_but_no_memory() {
 }
 
 #[test]
-fn rows_that_no_address_has_are_skipped() {
+fn rows_that_no_address_has_are_reported() {
     // An address has 16 bits, 5 of them for the row: row 31 fits, row 32 does not.
     let words = [8_u32 << 28, 1 << 28 | 3 << 11 | 31, 1 << 28 | 3 << 11 | 32];
     let read = convert("evt2", "csv", &words.map(u32::to_le_bytes).concat());
     assert_eq!(rows(&read.output), table([(0, 31 << 11 | 3, 1)]));
-    assert!(read.stderr.contains("\n4 bytes skipped\n"), "{}", read.stderr);
+    let note = "\nevents without an address, in rows from 32 on: 1; `evt2,pixels=1` reads";
+    assert!(read.stderr.contains(note), "{}", read.stderr);
+    let read = convert("evt2,pixels=1", "csv", &words.map(u32::to_le_bytes).concat());
+    assert_eq!(rows(&read.output), "tick,x,y,polarity\n0,3,31,1\n0,3,32,1\n");
+}
+
+/// Returns a table of 1000 events of a camera of 640 x 480 pixels.
+fn pixels() -> String {
+    let mut table = "tick,x,y,polarity\n".to_owned();
+    for i in 0..1000_u32 {
+        let polarity = if i % 3 == 0 { -1 } else { 1 };
+        writeln!(table, "{},{},{},{polarity}", i / 4 * 977, i * 7919 % 640, i * 104_729 % 480)
+            .unwrap();
+    }
+    table
+}
+
+#[test]
+fn the_events_of_a_camera_keep_their_columns_and_rows() {
+    let table = pixels();
+    for format in ["evt2,width=640,height=480", "evt2", "evt3", "es,width=640,height=480", "csv"] {
+        let there = convert("csv", format, table.as_bytes());
+        assert!(there.stderr.contains(", 1000 events at 1000 pixels"), "{}", there.stderr);
+        let (name, _) = format.split_once(',').unwrap_or((format, ""));
+        let back = convert(name, "csv", &there.output);
+        assert_eq!(rows(&back.output), table, "{format}");
+        assert!(back.stderr.contains("\n0 bytes skipped\n"), "{format}: {}", back.stderr);
+    }
+    let sized = convert("csv", "evt3,width=640,height=480", table.as_bytes()).output;
+    assert!(sized.starts_with(b"% evt 3.0\n% format EVT3;height=480;width=640\n"));
+    // The input's header has the size.
+    let es = convert("evt3", "es", &sized).output;
+    assert_eq!(es[15..20], [1, 0x80, 2, 0xE0, 1]);
+    assert_eq!(rows(&convert("es", "csv", &es).output), table);
+    // A picture of the size that stands for addresses is one row higher.
+    let far = "tick,x,y,polarity\n5,2047,31,1\n";
+    let raw = convert("csv", "evt2,width=2048,height=32", far.as_bytes()).output;
+    assert_eq!(rows(&convert("evt2", "csv", &raw).output), far);
+
+    refused("convert --from csv --to es", &table, &["es,width=320,height=240"]);
+    refused("convert --from csv --to link", &table, &["events of a camera have columns and rows"]);
+    refused("convert --from csv --to evt2,width=9", &table, &["width= and height= go together"]);
+    refused("convert --from csv --to evt21", &table, &["evt21 is read, and not written"]);
+    let dropped = good_bytes("convert --from csv --to edvs:e2 --drop", table.as_bytes());
+    assert!(dropped.stderr.contains("1000 events dropped"), "{}", dropped.stderr);
+}
+
+#[test]
+fn what_frames_writes_is_read_back_whole() {
+    let mut video = b"YUV4MPEG2 W96 H80 F25:1 Cmono\n".to_vec();
+    for frame in 0..6_u32 {
+        video.extend(b"FRAME\n");
+        video.extend((0..96 * 80_u32).map(|pixel| (pixel * 7 + frame * 61) as u8));
+    }
+    let (directory, path) = file("x.y4m", video);
+    let events = |name: &str| {
+        let output = directory.path().join(name);
+        ran!("frames {path} --threshold 10 -o {}", output.display());
+        std::fs::read(output).unwrap()
+    };
+    let table = String::from_utf8(events("x.csv")).unwrap();
+    assert!(table.lines().count() > 10_000);
+    assert_eq!(rows(&convert("csv", "csv", table.as_bytes()).output), table);
+    assert_eq!(rows(&convert("es", "csv", &events("x.es")).output), table);
+    assert_eq!(rows(&convert("evt2", "csv", &events("x.raw")).output), table);
+}
+
+/// As a GenX320 sends it by default: a word has up to 32 pixels.
+#[test]
+fn evt21_is_read_as_what_its_header_says() {
+    let words: [u64; 5] = [
+        0x8000_0001_0000_0000,
+        0x10C2_000A_0000_0005,
+        0x0003_000B_0000_0001,
+        0x8000_0002_0000_0000,
+        0x1141_000C_8000_0001,
+    ];
+    let little: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    let halves: Vec<u8> =
+        words.iter().flat_map(|word| word.rotate_left(32).to_le_bytes()).collect();
+    let header = |order: &str| {
+        format!(
+            "% camera_integrator_name Prophesee\n% evt 2.1\n\
+             % format EVT21;height=320;width=320;endianness={order}\n% end\n"
+        )
+    };
+    let table =
+        "tick,x,y,polarity\n67,64,10,1\n67,66,10,1\n64,96,11,-1\n133,32,12,1\n133,63,12,1\n";
+    for (order, words) in [("little", &little), ("legacy", &halves)] {
+        let file = [header(order).as_bytes(), words].concat();
+        assert_eq!(rows(&convert("evt21", "csv", &file).output), table, "{order}");
+    }
+    let file = [header("little").as_bytes(), &little].concat();
+    let text = |bytes: &[u8]| bytes.to_vec();
+    for (format, file, said) in [
+        ("evt2", text(&file), "the header says EVT 2.1, which the format `evt21` reads"),
+        ("evt3", text(&file), "the header says EVT 2.1, which the format `evt21` reads"),
+        ("evt21", header("big").into_bytes(), "endianness=big"),
+    ] {
+        let (_directory, path) = common::file("x.raw", file);
+        refused(&format!("convert --from {format} --to csv {path}"), "", &[said]);
+    }
 }
 
 #[test]

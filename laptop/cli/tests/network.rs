@@ -534,6 +534,37 @@ fn a_recurrent_network_that_was_trained_on_a_flight_goes_onto_reckon() {
     assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
 }
 
+/// The leaks of the outputs differ, so that the driver leaks them and the chip adds up their weights. Inputs far denser than
+/// those of the recording that tuned the network must not bring these sums to the end of their 16 bits.
+#[test]
+fn outputs_that_the_driver_leaks_take_denser_inputs_than_the_recording() {
+    let list = |values: Vec<String>| format!("[{}]", values.join(","));
+    let row = |neuron: usize| {
+        list((0..16).map(|input| if neuron % 16 == input { "1.5" } else { "0" }.into()).collect())
+    };
+    let layer = list((0..48).map(row).collect());
+    let readout = |weight: &str| list(vec![weight.to_owned(); 48]);
+    let (_network, network) = file(
+        "dense.json",
+        format!(
+            "{{\"layers\":[{{\"weights\":{layer},\"keep\":0.9,\"threshold\":1}}],\
+             \"readout\":{{\"weights\":[{},{}],\"keep\":[0.5,0.9]}}}}",
+            readout("1"),
+            readout("-0.5")
+        ),
+    );
+    let (_sparse, sparse) = file("sparse.txt", "0\n5\n\n9\n".repeat(50));
+    let (_dense, dense) = file("dense.txt", "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15\n".repeat(40));
+    let ran = good(&format!("network {network} {sparse} --on reckon --held-out {dense}"), "");
+    assert!(ran.output.contains("outputs: ReckOnOutputs::Leaky"), "{}", ran.output);
+    let (_, held_out) = ran.stderr.split_once("held out:\n").unwrap();
+    let [_, size, error] = figures(held_out, "readout: 2 outputs, ")[..] else {
+        panic!("{}", ran.stderr)
+    };
+    assert!(size > 100.0 && error < 0.01 * size, "{}", ran.stderr);
+    assert!(!ran.stderr.contains("16 bits"), "{}", ran.stderr);
+}
+
 /// A NIR graph whose layers are nested graphs, as snnTorch and Norse write them, gives the same constants as a flat
 /// graph, apart from the names of nodes. The weights of a recurrent layer are read too.
 #[test]

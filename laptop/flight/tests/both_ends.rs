@@ -180,4 +180,4 @@ macro_rules! flights {
     )*};
 }
 
-flights! { sod sf asf grf_slots }
+flights! { sod sf asf grf_slots notch first_order }

@@ -4,14 +4,13 @@ mod bank;
 mod flown;
 
 pub use bank::BankAdvice;
-use flown::Inertial;
 pub use flown::{Verdict as FlightVerdict, verdict};
 
 use crate::Result;
 use crate::brief::{brief, short};
 use crate::events::{Format, Item};
-use crate::flight::{Filter, Filtering};
-use crate::look::{ChannelSummary, Verdict, known_unit};
+use crate::flight::{Filter, Filtering, period};
+use crate::look::{ChannelSummary, Verdict};
 use crate::scheme::Scheme;
 use crate::slope::Slope;
 use crate::trial::{Recording, Trial};
@@ -21,7 +20,9 @@ use crate::tune::report::{Cut, DRIFTS, Row};
 use crate::tune::search::{Budget, Method, search, share};
 use crate::tune::stretch::{HoldOut, cut};
 use crate::tune::{Goal, Limits, Problem, Stretch, costs};
+use crate::unit::Inertial;
 use crate::watch::{Progress, Watch};
+use catalogue::Kind;
 use catalogue::run::{Asked, Given, SampleType};
 use serde::Serialize;
 use spikewire::{Event, Keyframe, Tick};
@@ -42,6 +43,9 @@ const STEEP: f64 = 0.02;
 /// the bandwidth, is too small.
 const FEWEST: f64 = 4.0;
 
+/// Warning of a search that ended early.
+const CUT_SHORT: &str = "the search was cut short: what is advised depends on this machine's speed, and on when it was stopped";
+
 /// Returns the largest latency, in samples, that a control loop tolerates. `bandwidth` is the loop's bandwidth in Hz,
 /// and `rate` is the number of samples a second.
 fn borne(bandwidth: f64, rate: f64) -> f64 {
@@ -54,11 +58,14 @@ pub struct AdviseRequest {
     pub recordings: Vec<Recording>,
     /// Sample type of the codecs.
     pub sample: SampleType,
-    /// Largest RMSE that the control loop tolerates, in the signal's unit. It applies as given. With `None` it is a fifth
-    /// of the signal's standard deviation; if `loop_bandwidth` is given and the channel's name is that of a gyroscope or
-    /// accelerometer, it is also at most the RMSE, without the largest twentieth of the errors, of the parameters with
-    /// which the simulated drone flew.
-    pub max_rmse: Option<f64>,
+    /// Largest RMSE that the control loop tolerates, in the signal's unit: one for each recording, or one for all if
+    /// their units do not differ. It applies as given.
+    ///
+    /// If it is empty, the largest RMSE is a fifth of the signal's standard deviation. If `loop_bandwidth` is given too,
+    /// and the channel is an axis of a gyroscope or an accelerometer whose unit is known, no code is advised that is
+    /// coarser than the parameters with which the simulated drone flew. These parameters themselves are taken if they
+    /// come near enough.
+    pub max_rmse: Vec<f64>,
     /// Maximum latency of the code, in samples; unlimited if `None`.
     pub max_latency: Option<f64>,
     /// Bandwidth in Hz of the control loop that will use the decoded values, at most a quarter of the sample rate. If
@@ -93,7 +100,7 @@ impl AdviseRequest {
         Self {
             recordings,
             sample: SampleType::F32,
-            max_rmse: None,
+            max_rmse: Vec::new(),
             max_latency: None,
             loop_bandwidth: None,
             frame_loss: Self::FRAME_LOSS,
@@ -105,12 +112,53 @@ impl AdviseRequest {
     }
 }
 
+impl AdviseRequest {
+    /// Returns the RMSE that is allowed for a channel, if it is given.
+    fn rmse(&self, channel: usize) -> Option<f64> {
+        self.max_rmse.get(channel).or(self.max_rmse.first()).copied()
+    }
+
+    /// Checks the allowed RMSE.
+    ///
+    /// # Errors
+    /// Returns an error if there is neither one for all recordings nor one for each, if one is not above 0, or if one for
+    /// all would serve several units.
+    fn check_rmse(&self) -> Result<()> {
+        if let Some(rmse) = self.max_rmse.iter().find(|own| !(own.is_finite() && **own > 0.0)) {
+            return Err(RequestKind::NotPositive.of(Given::new("max_rmse", rmse)));
+        }
+        let (values, channels) = (self.max_rmse.len(), self.recordings.len());
+        if values > 1 && values != channels {
+            return Err(RequestKind::OneAChannel { values, channels }.of(Given::named("max_rmse")));
+        }
+        if values != 1 {
+            return Ok(());
+        }
+        let mut first: Option<(&str, String)> = None;
+        for recording in &self.recordings {
+            let unit = Inertial::of(recording).map(|own| own.unit);
+            let Some(unit) = unit.or_else(|| recording.unit().map(str::to_owned)) else { continue };
+            let (one, known) = first.get_or_insert((&recording.name, unit.clone()));
+            if *known != unit {
+                let kind = RequestKind::SeveralUnits {
+                    one: format!("{one} in {known}"),
+                    other: format!("{} in {unit}", recording.name),
+                };
+                return Err(kind.of(Given::new("max_rmse", self.max_rmse[0])));
+            }
+        }
+        Ok(())
+    }
+}
+
 /// The advice on one channel.
 #[derive(Debug, Serialize)]
 pub struct Advice {
     look: ChannelSummary,
     /// The reason that no scheme is advised; `None` if a scheme is advised.
     objection: Option<String>,
+    /// A reason not to trust what is advised; `None` if there is none.
+    warning: Option<String>,
     max_rmse: f64,
     /// The schemes that stay within the allowed RMSE and break no limit. The advised scheme comes first.
     reaching: Vec<Candidate>,
@@ -124,10 +172,13 @@ pub struct Advice {
     is_cut_short: bool,
     /// Largest latency that the control loop tolerates, in samples. `None` if the bandwidth of the loop is unknown.
     loop_latency: Option<f64>,
-    /// The channel of an inertial sensor that this is, if no scheme may be coarser on it than it flew: in a control loop,
-    /// without an RMSE of the user's.
+    /// The axis of an inertial sensor that the channel is, if its unit is known.
     #[serde(skip)]
-    flown: Option<Inertial>,
+    inertial: Option<Inertial>,
+    /// Whether no scheme may be coarser on this channel than it flew: in a control loop, on an axis of an inertial
+    /// sensor, without an RMSE of the user's.
+    #[serde(skip)]
+    stays_as_flown: bool,
     /// Bytes a second that the raw samples would take on a wire.
     raw_bytes_per_second: Option<f64>,
     #[serde(skip)]
@@ -165,6 +216,58 @@ impl Filtered {
     }
 }
 
+/// A recording as a scheme's encoder gets it, behind its filter, with limits on the scheme's settings.
+struct Ready<'a> {
+    scheme: Scheme,
+    /// The samples before the filter.
+    samples: &'a Recording,
+    /// The samples behind the filter, if there is one.
+    filtered: Option<Recording>,
+    limits: Limits,
+    /// The parameters that flew, and their errors on this recording. `None` if the scheme did not fly, or if the unit of
+    /// the recording is unknown.
+    flown: Option<(Asked, Errors)>,
+}
+
+impl Ready<'_> {
+    fn recording(&self) -> &Recording {
+        self.filtered.as_ref().unwrap_or(self.samples)
+    }
+}
+
+/// The errors of decoded values beside a recording.
+#[derive(Clone, Copy, Debug)]
+struct Errors {
+    /// Root mean square of all errors.
+    rmse: f64,
+    /// Root mean square of the errors without the largest twentieth of them: those where the signal jumps farther than
+    /// the spikes of a sample reach.
+    usual: f64,
+}
+
+impl Errors {
+    fn of(recording: &Recording, decoded: &[f64]) -> Self {
+        const LEFT_OUT: usize = 20;
+        let errors = recording.values.iter().zip(decoded);
+        let mut squares: Vec<f64> =
+            errors.map(|(value, decoded)| (value - decoded).powi(2)).collect();
+        squares.sort_by(f64::total_cmp);
+        let usual = &squares[..squares.len() - squares.len() / LEFT_OUT];
+        Self { rmse: root_mean(&squares), usual: root_mean(usual) }
+    }
+
+    /// Returns whether these errors are no larger than `others`, all of them and the usual ones.
+    fn are_within(self, others: Self) -> bool {
+        /// Errors of the same settings may differ by their rounding.
+        const SAME: f64 = 1.0 + 1e-9;
+        self.rmse <= others.rmse * SAME && self.usual <= others.usual * SAME
+    }
+}
+
+fn root_mean(squares: &[f64]) -> f64 {
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+}
+
 /// The outcome of tuning one scheme on one channel.
 enum Tuning {
     /// Settings that reach the allowed RMSE and keep all limits.
@@ -176,8 +279,10 @@ enum Tuning {
 #[derive(Debug, Serialize)]
 struct Candidate {
     link_bytes_per_second: Option<f64>,
-    /// The RMSE that was allowed.
-    max_rmse: f64,
+    /// Whether the parameters are those with which the simulated drone flew.
+    is_as_flown: bool,
+    /// RMSE of the whole recording beside the samples before the filter.
+    rmse_of_samples: f64,
     #[serde(flatten)]
     row: Row,
     #[serde(skip)]
@@ -198,13 +303,14 @@ pub fn advise(request: &AdviseRequest, watch: &Watch) -> Result<Vec<Advice>> {
         return Err(RequestKind::NotFlown { most }.of(Given::new("frame_loss", request.frame_loss)));
     }
     costs::core(&request.core)?;
+    request.check_rmse()?;
     let end = request.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
     let schemes: Vec<Scheme> = Scheme::all().collect();
     let searches = schemes.len() * request.recordings.len();
     let mut before = 0;
     let mut all = Vec::new();
-    for recording in &request.recordings {
-        let mut advice = Advice::new(request, recording)?;
+    for (channel, recording) in request.recordings.iter().enumerate() {
+        let mut advice = Advice::new(request, channel, recording)?;
         for &scheme in &schemes {
             let words = format!("{} {}", recording.name, scheme.name());
             let tick = |evaluated: usize, _: Option<&_>| {
@@ -237,7 +343,7 @@ impl Advice {
         Some((best.scheme?, &best.row))
     }
 
-    fn new(request: &AdviseRequest, recording: &Recording) -> Result<Self> {
+    fn new(request: &AdviseRequest, channel: usize, recording: &Recording) -> Result<Self> {
         /// Default of the allowed RMSE, as a share of the signal's standard deviation. The share gives a
         /// signal-to-noise ratio of 14 dB.
         const PART: f64 = 0.2;
@@ -264,12 +370,23 @@ impl Advice {
                 return Err(RequestKind::NotAboveZero.of(Given::new("loop_bandwidth", bandwidth)));
             }
         };
-        let is_limited = loop_latency.is_some() && request.max_rmse.is_none();
+        let inertial = Inertial::of(recording);
+        let stays_as_flown =
+            loop_latency.is_some() && request.max_rmse.is_empty() && inertial.is_some();
+        let rest = inertial.as_ref().and_then(|axis| look.rest(axis));
+        // At rest, a fifth of the deviation is a part of the noise: what flew is fine enough.
+        let (objection, warning) = match (objection, rest) {
+            (None, rest) if stays_as_flown => (rest, None),
+            (None, rest) => (None, rest),
+            (objection, _) => (objection, None),
+        };
         Ok(Self {
             objection,
+            warning,
             loop_latency,
-            flown: Inertial::named(&recording.name).filter(|_| is_limited),
-            max_rmse: request.max_rmse.unwrap_or(PART * look.deviation),
+            inertial,
+            stays_as_flown,
+            max_rmse: request.rmse(channel).unwrap_or(PART * look.deviation),
             reaching: Vec::new(),
             others: Vec::new(),
             unflown: Vec::new(),
@@ -314,6 +431,10 @@ impl Advice {
     }
 
     /// Tunes a scheme within `budget`. The parameters in `fixed` keep their values.
+    ///
+    /// If no scheme may be coarser than it flew, the parameters that flew are taken if they come near enough. Otherwise
+    /// settings as fine are searched: first with the numbers that flew, such as the threshold, then with the counts, then
+    /// with neither.
     fn tuned(
         &self,
         request: &AdviseRequest,
@@ -322,35 +443,82 @@ impl Advice {
         fixed: &Asked,
         budget: &Budget,
     ) -> Result<Tuning> {
-        /// Largest RMSE on held-out blocks, as a multiple of the allowed RMSE. It is above 1 because blocks differ by
-        /// chance.
-        const MARGIN: f64 = 1.25;
-        let filtered = self.filter(scheme, request.sample);
-        let own;
-        let recording = match &filtered {
-            Some(filter) => {
-                own = recording.filtered(|| filter.start());
-                &own
-            }
-            None => recording,
-        };
-        let (train, held_out) = cut(recording, HoldOut { blocks: 10, part: 0.3 })?;
-        let whole = Stretch::whole(recording);
-        let cut = Cut { name: recording.name.clone(), train, held_out, whole };
-        let max_rmse = match self.allowed(scheme, recording) {
-            Ok(rmse) => rmse,
+        let ready = match self.ready(request, scheme, recording) {
+            Ok(ready) => ready,
             Err(error) => {
                 return Ok(Tuning::Missed(format!("cannot code it as it flew: {error}")));
             }
         };
-        let delay = filtered.map_or(0.0, |own| own.delay);
+        if let Some((asked, _)) = ready.flown.as_ref().filter(|_| self.stays_as_flown) {
+            let (mut numbers, mut counts) = (asked.clone(), asked.clone());
+            for parameter in scheme.info().parameters {
+                let others =
+                    if parameter.kind == Kind::Number { &mut counts } else { &mut numbers };
+                others.unset(parameter.name);
+            }
+            // A log that jumps farther than any flight, as in a crash, needs more spikes a sample.
+            for flown in [asked, &numbers, &counts] {
+                let own = fixed.or(flown);
+                if let Tuning::Reached(mut own) = self.searched(request, &ready, &own, budget)? {
+                    own.is_as_flown = flown == asked && fixed.or(asked) == *asked;
+                    return Ok(Tuning::Reached(own));
+                }
+            }
+        }
+        self.searched(request, &ready, fixed, budget)
+    }
+
+    /// Filters a recording as the scheme's flights did, and finds the limits on the scheme's settings.
+    ///
+    /// # Errors
+    /// Returns an error if the recording cannot be coded with the parameters that flew.
+    fn ready<'a>(
+        &self,
+        request: &AdviseRequest,
+        scheme: Scheme,
+        samples: &'a Recording,
+    ) -> Result<Ready<'a>> {
+        let filter = self.filter(scheme, request.sample);
+        let delay = filter.map_or(0.0, |own| own.delay);
         let borne = self.loop_latency.map(|borne| borne - delay);
-        let latencies = [request.max_latency, borne].into_iter().flatten();
-        let limits = Limits { latency: latencies.reduce(f64::min), ..Limits::default() };
-        let goal = Goal::MostEfficient(max_rmse);
-        let known = (goal, &limits, self.core.as_str());
+        let latency = [request.max_latency, borne].into_iter().flatten().reduce(f64::min);
+        let limits = Limits { latency, ..Limits::default() };
+        let filtered = filter.map(|own| samples.filtered(|| own.start()));
+        let mut ready = Ready { scheme, samples, filtered, limits, flown: None };
+        if let Some(asked) = self.flown_parameters(scheme) {
+            let trial = Trial::new(scheme, &asked, self.sample, ready.recording())?;
+            let errors = Errors::of(ready.recording(), &trial.decoded);
+            ready.flown = Some((asked, errors));
+        }
+        Ok(ready)
+    }
+
+    /// Returns the parameters with which the scheme flew on this channel, in the channel's unit. Returns `None` outside a
+    /// control loop, if the channel's unit is unknown, or if the scheme did not fly.
+    fn flown_parameters(&self, scheme: Scheme) -> Option<Asked> {
+        self.loop_latency?;
+        flown::parameters(scheme, self.inertial.as_ref()?)
+    }
+
+    /// Searches for settings of a scheme within `budget`. The parameters in `fixed` keep their values.
+    fn searched(
+        &self,
+        request: &AdviseRequest,
+        ready: &Ready,
+        fixed: &Asked,
+        budget: &Budget,
+    ) -> Result<Tuning> {
+        /// Largest RMSE on held-out blocks, as a multiple of the allowed RMSE. It is above 1 because blocks differ by
+        /// chance.
+        const MARGIN: f64 = 1.25;
+        let Ready { scheme, limits, flown, .. } = ready;
+        let (scheme, recording, max_rmse) = (*scheme, ready.recording(), self.max_rmse);
+        let (train, held_out) = cut(recording, HoldOut { blocks: 10, part: 0.3 })?;
+        let whole = Stretch::whole(recording);
+        let cut = Cut { name: recording.name.clone(), train, held_out, whole };
+        let known = (Goal::MostEfficient(max_rmse), limits, self.core.as_str());
         let problem = Problem::new(scheme, request.sample, fixed, &cut.train, known);
-        let method = Method { seed: request.seed, free_taps: false };
+        let method = Method { seed: request.seed, free_taps: false, is_unchecked: false };
         let found = search(&problem, method, budget);
         let cut_short = if found.is_cut_short { ", its search cut short" } else { "" };
         let missed = |words: String| Ok(Tuning::Missed(words + cut_short));
@@ -384,7 +552,17 @@ impl Advice {
         }
         let options = row.settings.to_asked(scheme.info());
         let trial = Trial::new(scheme, &options, problem.sample, recording)?;
-        let link_bytes_per_second = match recording.rate {
+        let errors = Errors::of(recording, &trial.decoded);
+        if let Some((_, flown)) = flown.as_ref().filter(|_| self.stays_as_flown)
+            && !errors.are_within(*flown)
+        {
+            return missed(format!(
+                "is coarser than it flew at the nearest settings: {}, as it flew {}",
+                short(errors.usual),
+                short(flown.usual)
+            ));
+        }
+        let link_bytes_per_second = match recording.rate.filter(|rate| period(*rate).is_ok()) {
             Some(rate) => {
                 // One keyframe a second, as it suits a recorder: a loop's bank has more.
                 let bytes = link_bytes(&trial, rate, rate.round() as u64)?;
@@ -392,21 +570,22 @@ impl Advice {
             }
             None => None,
         };
+        let rmse_of_samples = Errors::of(ready.samples, &trial.decoded).rmse;
         let scheme = Some(scheme);
-        Ok(Tuning::Reached(Box::new(Candidate { link_bytes_per_second, max_rmse, row, scheme })))
+        let is_as_flown = false;
+        Ok(Tuning::Reached(Box::new(Candidate {
+            link_bytes_per_second,
+            is_as_flown,
+            rmse_of_samples,
+            row,
+            scheme,
+        })))
     }
 
-    /// Returns the largest RMSE that a scheme's settings may have on a filtered recording. In a control loop, they may
-    /// be no coarser than the parameters that flew, unless the user says how coarse they may be.
-    ///
-    /// # Errors
-    /// Returns an error if the recording cannot be coded with the parameters that flew.
-    fn allowed(&self, scheme: Scheme, recording: &Recording) -> Result<f64> {
-        let Some(asked) = self.flown.and_then(|channel| flown::parameters(scheme, channel)) else {
-            return Ok(self.max_rmse);
-        };
-        let trial = Trial::new(scheme, &asked, self.sample, recording)?;
-        Ok(usual_rmse(recording, &trial).min(self.max_rmse))
+    /// Returns the unit of the channel, as a flight file has it; empty if it is unknown.
+    fn unit(&self) -> String {
+        let axis = self.inertial.as_ref().map(|own| own.unit.clone());
+        axis.or_else(|| self.look.unit.clone()).unwrap_or_default()
     }
 
     /// Returns the low-pass filter that stood before the scheme's encoder in the simulated flights. Returns `None` if
@@ -416,6 +595,16 @@ impl Advice {
         self.loop_latency?;
         let filter = flown::flown(scheme.name())?.filter()?;
         Filtered::new(filter, sample, self.look.rate?)
+    }
+
+    /// Returns whether a bank codes this channel as it flew, although its recording is unfit for tuning: it holds nothing
+    /// but noise, or rests.
+    fn is_coded_as_flown(&self) -> bool {
+        let is_still = !matches!(
+            self.look.verdict,
+            Verdict::TooShort | Verdict::FullOfHoles | Verdict::Clipped
+        );
+        self.stays_as_flown && self.objection.is_some() && is_still
     }
 
     /// Returns the tuned settings of a scheme. Returns `None` if the scheme misses the allowed RMSE or breaks a limit.
@@ -439,15 +628,16 @@ impl Advice {
 
     /// Says that no scheme comes near enough.
     fn none(&self) -> String {
-        let flown = if self.flown.is_some() { "as near as it flew and " } else { "" };
+        let flown = if self.stays_as_flown { "as near as it flew and " } else { "" };
         format!("no scheme comes {flown}within an RMSE of {}", short(self.max_rmse))
     }
 
     /// Formats the advice as text for people.
     pub fn page(&self) -> String {
-        let ChannelSummary { name, samples, seconds, rate, jitter_ms, gaps, rejected, .. } =
-            &self.look;
-        let unit = known_unit(name).map_or(String::new(), |unit| format!(" {unit}"));
+        let ChannelSummary {
+            name, unit, samples, seconds, rate, jitter_ms, gaps, rejected, ..
+        } = &self.look;
+        let unit = unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
         let round = |value: f64| short((value * 1000.0).round() / 1000.0);
         let mut lines = vec![name.clone()];
         let time = seconds.zip(*rate).map_or(", no times".to_owned(), |(seconds, rate)| {
@@ -472,8 +662,12 @@ impl Advice {
         let band = bandwidth
             .map_or(String::new(), |band| format!("; 99 % of the power below {} Hz", round(band)));
         lines.push(format!("  noise floor {}{band}; clipped {} %", short(*noise), round(*clipped)));
-        if let Some(words) = self.look.objection() {
+        let objection = self.look.objection().or_else(|| self.objection.clone());
+        for words in [&objection, &self.warning].into_iter().flatten() {
             lines.push(format!("  ! {words}"));
+        }
+        if self.is_coded_as_flown() {
+            lines.push("  a bank codes it as it flew".to_owned());
         }
         if let Some(latency) = self.loop_latency {
             lines.push(format!(
@@ -493,10 +687,7 @@ impl Advice {
             lines.push(format!("  not: {}", others.join("; ")));
         }
         if self.is_cut_short {
-            lines.push(
-                "  ! the search was cut short: what is advised depends on this machine's speed"
-                    .to_owned(),
-            );
+            lines.push(format!("  ! {CUT_SHORT}"));
         }
         lines.join("\n") + "\n\n"
     }
@@ -509,6 +700,12 @@ impl Advice {
         let Candidate { row, .. } = best;
         let held_out =
             row.held_out.map_or(String::new(), |own| format!(" ({} held out)", short(own.rmse)));
+        let is_filtered = best.scheme.is_some_and(|own| self.filter(own, self.sample).is_some());
+        let beside = if is_filtered {
+            format!(" of the filtered signal, {} beside its samples", short(best.rmse_of_samples))
+        } else {
+            String::new()
+        };
         let raw = self.raw_bytes_per_second.map_or("-".to_owned(), |bytes| format!("{bytes:.0}"));
         let ram = row.costs.ram.map_or("unknown".to_owned(), |bytes| bytes.to_string());
         let next = self.reaching.iter().skip(1).take(3);
@@ -519,13 +716,15 @@ impl Advice {
         } else {
             format!("next: {}", next.join(", "))
         };
-        let is_of_flights = best.max_rmse < self.max_rmse;
-        let flown = if is_of_flights { ", that of the parameters that flew" } else { "" };
+        let flown = if best.is_as_flown { ", with the parameters that flew" } else { "" };
         let take = if self.is_one_of_many { "alone" } else { "take" };
+        // Every encoder starts from its own first sample, so that the log's first is no parameter to take.
+        let entries = row.settings.entries().iter();
+        let parameters: Vec<_> = entries.filter(|(key, _)| *key != "first").cloned().collect();
         let mut reasons = vec![
-            format!("  {take} {} in {sample}: {}", row.scheme, brief(row.settings.entries())),
+            format!("  {take} {} in {sample}: {}", row.scheme, brief(&parameters)),
             format!(
-                "    RMSE {}{held_out}, {:.1} % of the samples without a spike, {} events a second",
+                "    RMSE {}{held_out}{beside}, {:.1} % of the samples without a spike, {} events a second",
                 short(row.tuned_on.rmse),
                 row.tuned_on.efficiency,
                 row.whole.events_per_second.map_or("-".to_owned(), |rate| format!("{rate:.1}")),
@@ -539,7 +738,7 @@ impl Advice {
                 "    {} bytes a second on the link, where samples take {raw}: the fewest of {} schemes that come near enough, this one within an RMSE of {}{flown}; {next}",
                 bytes(best),
                 self.reaching.len(),
-                short(best.max_rmse)
+                short(self.max_rmse)
             ),
         ];
         if best.scheme.is_some_and(|scheme| scheme.info().drifts()) {
@@ -547,17 +746,6 @@ impl Advice {
         }
         reasons
     }
-}
-
-/// Returns the RMSE of a trial without its largest errors, a twentieth of all: those where the signal jumps farther than
-/// the spikes of a sample reach.
-fn usual_rmse(recording: &Recording, trial: &Trial) -> f64 {
-    const LEFT_OUT: usize = 20;
-    let errors = recording.values.iter().zip(&trial.decoded);
-    let mut squares: Vec<f64> = errors.map(|(value, decoded)| (value - decoded).powi(2)).collect();
-    squares.sort_by(f64::total_cmp);
-    let usual = squares.len() - squares.len() / LEFT_OUT;
-    (squares.iter().take(usual).sum::<f64>() / usual.max(1) as f64).sqrt()
 }
 
 /// Returns the number of bytes that a trial's events take as frames of `spikewire`'s link. Each frame is sent once it
@@ -569,7 +757,7 @@ fn usual_rmse(recording: &Recording, trial: &Trial) -> f64 {
 pub fn link_bytes(trial: &Trial, rate: f64, keyframe_every: u64) -> Result<f64> {
     let period = (1e6 / rate).round().max(1.0);
     let format: Format = format!("link,period={period}").parse()?;
-    let mut writer = format.writer(true);
+    let mut writer = format.writer(true)?;
     let mut bytes: Vec<u8> = Vec::new();
     let tick = |sample: u64| Tick::from_micros((sample as f64 * period) as u64);
     let (mut next, every) = (0, keyframe_every.max(1));

@@ -208,7 +208,9 @@ impl Error {
             ErrorKind::Events(EventsKind::NoWord { .. } | EventsKind::NoDirection { .. }) => {
                 Some("drop")
             }
-            ErrorKind::Spikes(SpikesKind::Untimed) => Some("rate"),
+            ErrorKind::Spikes(SpikesKind::Untimed)
+            | ErrorKind::Table(TableKind::UnevenRate { .. }) => Some("rate"),
+            ErrorKind::Table(TableKind::WhichUnit { .. }) => Some("time_unit"),
             ErrorKind::Request(RequestKind::TooShort { .. }) => Some("hold_out"),
             ErrorKind::Request(RequestKind::NothingToSearch { .. }) => Some("anyway"),
             _ => None,

@@ -2,14 +2,14 @@
 
 use crate::Error;
 use crate::brief::short;
-use crate::resolution::Resolution;
+use crate::resolution::{Resolution, held};
 use crate::scheme::Scheme;
 use crate::tune::RequestKind;
 use catalogue::run::{SampleType, Settings};
 use std::fmt::Write;
 
-/// Statistics of a channel: the range, the resolution, the number of samples that the sample type clamps, and the
-/// number of samples above the largest value that the code can represent.
+/// Statistics of a channel: the range, the resolution, the number of samples that the sample type clamps, the number
+/// outside the code's own range, and the number above the largest value that the code can represent.
 pub struct Fit {
     scheme: Scheme,
     sample: SampleType,
@@ -18,6 +18,8 @@ pub struct Fit {
     samples: u64,
     resolution: Resolution,
     saturated: u64,
+    range: Option<Range>,
+    outside: u64,
     reach: Option<f64>,
     beyond: u64,
 }
@@ -40,6 +42,8 @@ impl Fit {
             samples: 0,
             resolution: Resolution::new(settings.sample),
             saturated: 0,
+            range: Range::of(settings),
+            outside: 0,
             reach,
             beyond: 0,
         }
@@ -53,6 +57,7 @@ impl Fit {
             self.min = self.min.min(value);
             self.max = self.max.max(value);
             self.saturated += u64::from(value < low || value > high);
+            self.outside += u64::from(self.range.is_some_and(|range| !range.holds(value)));
             self.beyond += u64::from(value > reach);
         }
         self.samples += values.len() as u64;
@@ -77,6 +82,9 @@ impl Fit {
         }
         if let Some(cut) = cut(sample, saturated) {
             writeln!(notes, "{cut}")?;
+        }
+        if let Some(outside) = self.range.and_then(|own| own.outside(self.outside, samples)) {
+            writeln!(notes, "{outside}")?;
         }
         let range = max - min;
         let said =
@@ -108,6 +116,46 @@ impl Fit {
             )?;
         }
         Ok(())
+    }
+}
+
+/// The range `min` to `max` of a code that spreads it over its neurons, its times or its chances.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    min: f64,
+    max: f64,
+    sample: SampleType,
+}
+
+impl Range {
+    /// Makes the range of a code that computes in this sample type.
+    pub fn new(sample: SampleType, min: f64, max: f64) -> Self {
+        Self { min: held(sample, min), max: held(sample, max), sample }
+    }
+
+    /// Returns the range of a code with these settings; `None` if the code has no range.
+    pub fn of(settings: &Settings) -> Option<Self> {
+        let (min, max) = (settings.number("min").ok()?, settings.number("max").ok()?);
+        Some(Self::new(settings.sample, min, max))
+    }
+
+    /// Returns whether the value lies in the range once the sample type has rounded it, as it rounded the ends.
+    pub fn holds(&self, value: f64) -> bool {
+        (self.min..=self.max).contains(&held(self.sample, value))
+    }
+
+    /// Returns a sentence which says that `count` of the samples lie outside the range, or `None` if `count` is 0.
+    pub fn outside(&self, count: u64, samples: u64) -> Option<String> {
+        let Self { min, max, .. } = *self;
+        let percent = short(count as f64 * 100.0 / samples as f64);
+        (count > 0).then(|| {
+            format!(
+                "{count} of {samples} samples, {percent} %, lie outside the code's range, min {} to max {}: the \
+                 code clamps them or is silent there",
+                short(min),
+                short(max)
+            )
+        })
     }
 }
 

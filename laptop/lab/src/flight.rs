@@ -5,10 +5,10 @@ use crate::Result;
 use crate::coding::Coding;
 use crate::events::{Item, LinkTally, Values};
 use crate::input::{Chunk, InputOptions, Source};
-use crate::look::known_unit;
 use crate::scheme::Scheme;
 use crate::tune::RequestKind;
 use crate::tune::report::Row;
+use crate::unit::known_unit;
 use crate::values;
 use catalogue::run::{Asked, Given, SampleType, Words};
 use spikewire::link::{Received, Withheld};
@@ -89,8 +89,11 @@ pub(crate) const CLOCK_PPM: u32 = 20_000;
 /// # Errors
 /// Returns an error if the link cannot express the period.
 pub(crate) fn period(rate: f64) -> Result<NonZeroU16> {
-    let period = NonZeroU16::new((1e6 / rate).round().clamp(0.0, 65_535.0) as u16);
-    period.ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
+    let period = (1e6 / rate).round();
+    let period = Some(period).filter(|own| *own <= f64::from(u16::MAX)).map(|own| own as u16);
+    period
+        .and_then(NonZeroU16::new)
+        .ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
 }
 
 /// Returns a copy of `options` in which the columns are the sources of the flight's channels.
@@ -132,6 +135,10 @@ impl Source for Sampled<'_> {
 
     fn names(&self) -> Vec<&str> {
         self.source.names()
+    }
+
+    fn units(&self) -> Vec<Option<String>> {
+        self.source.units()
     }
 
     fn origin(&self) -> &[(&'static str, String)] {

@@ -39,6 +39,7 @@ pub mod spikes;
 pub mod timeline;
 pub mod trial;
 pub mod tune;
+pub mod unit;
 pub mod values;
 pub mod watch;
 

@@ -3,6 +3,7 @@
 use crate::brief::short;
 use crate::trial::Recording;
 use crate::tune::figures::power;
+use crate::unit::Inertial;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -11,6 +12,8 @@ use std::f64::consts::PI;
 pub struct ChannelSummary {
     /// Name of the channel.
     pub name: String,
+    /// Unit of the samples, if the log gives it or the name shows it.
+    pub unit: Option<String>,
     /// Number of finite samples.
     pub samples: usize,
     /// Number of samples that were missing or not finite.
@@ -67,6 +70,8 @@ pub enum Verdict {
     Clipped,
 }
 
+/// Largest standard deviation of a turn rate at rest, in rad/s, and of an acceleration at rest, in m/s².
+const AT_REST: [f64; 2] = [0.01, 0.1];
 /// Fewest samples of a channel that is fit for tuning.
 const FEWEST: usize = 200;
 /// Factor that tells a signal from noise. A white channel (one with a flat spectrum) counts as noise if its standard
@@ -118,6 +123,7 @@ impl ChannelSummary {
         };
         Self {
             name: recording.name.clone(),
+            unit: recording.unit().map(str::to_owned),
             samples,
             rejected,
             seconds: recording.seconds(),
@@ -135,6 +141,20 @@ impl ChannelSummary {
             resting: resting * 100.0,
             verdict,
         }
+    }
+
+    /// Returns a text for the user that says that a turn rate or an acceleration hardly moves. Returns `None` for any other
+    /// channel.
+    pub(crate) fn rest(&self, channel: &Inertial) -> Option<String> {
+        let Self { name, deviation, .. } = self;
+        let is_still = deviation / channel.per_si < AT_REST[usize::from(!channel.is_rate())];
+        is_still.then(|| {
+            format!(
+                "{name} hardly moves, as at rest: its deviation is {} {}; what is tuned on it follows the noise",
+                short(*deviation),
+                channel.unit
+            )
+        })
     }
 
     /// Returns a text for the user that says why the channel is unfit for tuning. Returns `None` if the channel is fit.
@@ -164,12 +184,6 @@ impl ChannelSummary {
             )),
         }
     }
-}
-
-/// Returns the unit of a field of PX4 logs, if the field's name shows the unit.
-pub fn known_unit(name: &str) -> Option<&'static str> {
-    let units = [("gyro_rad", "rad/s"), ("_m_s2", "m/s²"), ("_rad_s", "rad/s"), ("_m_s", "m/s")];
-    units.into_iter().find(|(part, _)| name.contains(part)).map(|(_, unit)| unit)
 }
 
 fn deviation(values: &[f64]) -> f64 {

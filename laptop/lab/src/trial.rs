@@ -1,10 +1,11 @@
 //! Encodes and decodes recordings in memory, in order to draw and score the results.
 
 use crate::Result;
-use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind};
+use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind, UnevenRate};
 use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
 use crate::slope::Slope;
+use crate::unit::known_unit;
 use catalogue::run::{Asked, Calibrated, Event, SampleType, Settings, Shape, Words};
 use std::ops::Range;
 
@@ -18,10 +19,13 @@ pub struct Recording {
     pub times: Vec<i64>,
     /// Index range of each segment. A restart of the recorder's clock begins a new segment.
     pub segments: Vec<Range<usize>>,
-    /// Sample rate in Hz, if known.
+    /// Sample rate in Hz, if known: samples through the length without gaps, or the rate that the user gave. What relies
+    /// on the rate asks for [`steady_rate`](Self::steady_rate).
     pub rate: Option<f64>,
     /// Name of the channel.
     pub name: String,
+    /// Unit of the samples, if the log gives it.
+    pub unit: Option<String>,
     /// Number of samples that were missing or not finite.
     rejected: usize,
     clock: Clock,
@@ -38,7 +42,7 @@ impl Recording {
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
         let (times, notes) = (Vec::new(), Vec::new());
-        Self { values, times, segments, rate, name, rejected: 0, clock, notes }
+        Self { values, times, segments, rate, name, unit: None, rejected: 0, clock, notes }
     }
 
     /// Reads a recording of one channel.
@@ -74,9 +78,9 @@ impl Recording {
         let finite = |row: usize| rows[..row].iter().filter(|row| **row).count();
         let segments = segments.into_iter().map(|own| finite(own.start)..finite(own.end));
         let segments: Vec<Range<usize>> = segments.filter(|own| !own.is_empty()).collect();
-        let channels = all.kept(&rows).into_iter().zip(source.names());
+        let channels = all.kept(&rows).into_iter().zip(source.names()).zip(source.units());
         channels
-            .map(|(values, name)| {
+            .map(|((values, name), unit)| {
                 if values.is_empty() {
                     let kind = TableKind::NoneFinite { samples: rows.len() };
                     return Err(kind.at(input.name()));
@@ -88,6 +92,7 @@ impl Recording {
                     segments: segments.clone(),
                     rate: clock.rate(),
                     name: name.to_owned(),
+                    unit,
                     clock: clock.clone(),
                     notes: source.notes().to_vec(),
                 })
@@ -112,6 +117,7 @@ impl Recording {
             segments: self.segments.clone(),
             rate: self.rate,
             name: self.name.clone(),
+            unit: self.unit.clone(),
             rejected: self.rejected,
             clock: self.clock.clone(),
             notes: self.notes.clone(),
@@ -126,6 +132,25 @@ impl Recording {
     /// Returns the number of samples that were missing or not finite.
     pub fn rejected(&self) -> usize {
         self.rejected
+    }
+
+    /// Returns the two rates of a recording whose times contradict themselves.
+    pub fn uneven(&self) -> Option<UnevenRate> {
+        self.clock.uneven()
+    }
+
+    /// Returns the sample rate in Hz, if it is known, for what must rely on it: a period that is written, or advice.
+    ///
+    /// # Errors
+    /// Returns an error that asks for the rate if the times of the recording contradict themselves.
+    pub fn steady_rate(&self) -> Result<Option<f64>> {
+        self.clock.steady_rate()?;
+        Ok(self.rate)
+    }
+
+    /// Returns the unit of the samples, if the log gives it or the channel's name shows it.
+    pub fn unit(&self) -> Option<&str> {
+        self.unit.as_deref().or_else(|| known_unit(&self.name))
     }
 
     /// Returns the duration in seconds, if it is known. The unknown time between segments is left out.

@@ -47,7 +47,7 @@ export function showFile() {
   render(options(fields.map((name) => [name, name]), channel.field), at("field"));
   showFound(topics);
   if (document.activeElement !== at("rate")) at("rate").value = channel.rate ?? "";
-  at("rate-field").hidden = recording ? Boolean(recording.arrays.times) : ![fileError?.parameter, fileError?.remedy].includes("rate") && !channel.rate;
+  at("rate-field").hidden = recording ? Boolean(recording.arrays.times) && !recording.uneven && !channel.rate : ![fileError?.parameter, fileError?.remedy].includes("rate") && !channel.rate;
   at("skip").checked = channel.skip ?? false;
   at("about").textContent = about(state);
   for (const id of OF_RECORDING) at(id).hidden = !recording;

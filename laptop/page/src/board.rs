@@ -82,7 +82,7 @@ fn hear(values: Option<(Box<dyn EventReader + '_>, Box<dyn EventWriter>)>) -> Re
     let stream = |(reader, own), is_values| {
         Stream::new(reader, Box::new(Recorder { own, heard: heard.clone(), is_values }), false)
     };
-    let mut spikes = stream((format.reader("the board"), Format::Csv.writer(false)), false);
+    let mut spikes = stream((format.reader("the board"), Format::Csv.writer(false)?), false);
     let mut values = values.map(|values| stream(values, true));
     let (mut spikes_file, mut values_file) = (Vec::new(), Vec::new());
     let mut buffer = vec![0; 1 << 14];

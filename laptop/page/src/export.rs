@@ -61,7 +61,7 @@ fn spikes(open: &Open, trial: &Trial, choice: &Choice) -> Result<Vec<u8>> {
     let input = open.input.as_ref().context("these samples come from no file")?;
     let (output, _) = if choice.filter.is_some() {
         let channel = (open.recording.name.clone(), trial.settings.to_asked(trial.scheme.info()));
-        let flight = flight::of(choice, open.recording.rate, vec![channel])?;
+        let flight = flight::of(choice, open.recording.steady_rate()?, vec![channel])?;
         encode_flight(&flight, input, None, || Ok(Output::memory()))?
     } else {
         let Coding { scheme, sample, asked } = Coding::of_settings(trial.scheme, &trial.settings);
@@ -73,7 +73,7 @@ fn spikes(open: &Open, trial: &Trial, choice: &Choice) -> Result<Vec<u8>> {
 /// The table as `spikewire convert --to es` writes it.
 fn event_stream(table: &[u8]) -> Result<Vec<u8>> {
     let reader = Format::Csv.reader("the spikes");
-    let mut stream = Stream::new(reader, Format::EventStream.writer(false), false);
+    let mut stream = Stream::new(reader, Format::EventStream { size: None }.writer(false)?, false);
     let mut file = Vec::new();
     stream.push(table, None, &mut file)?;
     stream.finish(&mut file)?;

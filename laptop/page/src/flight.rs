@@ -1,5 +1,6 @@
 //! A flight's file: of the axes that are drawn, and back into settings.
 
+use crate::recording;
 use crate::run::{Choice, texts};
 use anyhow::{Context, Result};
 use catalogue::run::Asked;
@@ -25,7 +26,7 @@ struct Channel {
 /// The file's text.
 ///
 /// # Errors
-/// The recording has no rate, or the channels cannot share a bank.
+/// The recording has no rate, its times contradict themselves, or the channels cannot share a bank.
 pub(crate) fn write(all: &Flown) -> Result<Value> {
     let mut channels = Vec::new();
     for Channel { name, parameters } in &all.channels {
@@ -34,7 +35,8 @@ pub(crate) fn write(all: &Flown) -> Result<Value> {
         asked.paper = false;
         channels.push((name.clone(), asked));
     }
-    Ok(json!({ "text": of(&all.choice, all.rate, channels)?.to_toml(&[]) }))
+    let rate = recording::with(|open| Ok(open.recording.steady_rate()?))?.or(all.rate);
+    Ok(json!({ "text": of(&all.choice, rate, channels)?.to_toml(&[]) }))
 }
 
 /// A flight of channels, each with its name and its parameters.

@@ -25,7 +25,7 @@ pub(crate) fn front(choice: &Choice, evaluations: usize) -> Result<Value> {
         let tick =
             |done: usize, _: Option<&Scored>| tell(&json!({ "done": done, "total": evaluations }));
         let budget = Budget { evaluations, deadline: None, is_stopped: &|| false, tick: &tick };
-        let found = search(&problem, Method { seed: 1, free_taps: false }, &budget);
+        let found = search(&problem, Method { seed: 1, free_taps: false, is_unchecked: false }, &budget);
         let stride = found.front.len().div_ceil(MOST).max(1);
         let points = found.front.iter().step_by(stride).map(|one| {
             json!({
@@ -49,7 +49,7 @@ pub(crate) fn advise(sample: &str, max_rmse: Option<f64>, evaluations: usize) ->
         let own = Recording::of(name.clone(), values.clone(), *rate);
         let mut request = AdviseRequest::new(vec![own]);
         (request.sample, request.max_rmse, request.evaluations) =
-            (sample.parse()?, max_rmse, evaluations);
+            (sample.parse()?, max_rmse.into_iter().collect(), evaluations);
         let told = |now: &Progress| {
             tell(&json!({ "done": now.done, "total": now.total, "words": now.words }));
         };

@@ -9,7 +9,6 @@ use flight_logs::files::{Bytes, lend, take_back};
 use lab::bench::signal::{RATE, Waveform};
 use lab::input::messages::overview;
 use lab::input::{ChannelOptions, InputOptions};
-use lab::look::known_unit;
 use lab::trial::Recording;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -151,20 +150,7 @@ fn each(field: &str) -> Vec<String> {
 }
 
 fn options(channel: Option<Channel>) -> ChannelOptions {
-    let mut options = ChannelOptions {
-        column: Vec::new(),
-        columns: Vec::new(),
-        time: None,
-        time_unit: None,
-        delimiter: None,
-        topic: None,
-        field: Vec::new(),
-        fields: Vec::new(),
-        rate: None,
-        gap: GAP,
-        skip_non_finite: false,
-        accept_cut: false,
-    };
+    let mut options = ChannelOptions { gap: GAP, ..ChannelOptions::default() };
     if let Some(Channel { topic, field, rate, skip_non_finite, accept_cut }) = channel {
         options.accept_cut = accept_cut && topic.is_some();
         options.skip_non_finite = skip_non_finite;
@@ -194,8 +180,9 @@ pub(crate) fn load(channel: Channel) -> Result<Value> {
         "name": recording.name,
         "samples": recording.values.len(),
         "rate": recording.rate,
+        "uneven": recording.uneven().is_some(),
         "seconds": recording.seconds(),
-        "unit": known_unit(&recording.name),
+        "unit": recording.unit(),
         "notes": notes.collect::<Vec<_>>(),
         "segments": recording.segments.iter().map(|own| own.start).collect::<Vec<_>>(),
     });

@@ -12,6 +12,7 @@ pub(crate) fn label(name: &str) -> String {
         "accept_cut" => "“take the whole messages of a damaged log”".to_owned(),
         "skip_non_finite" => "“pass over missing values”".to_owned(),
         "rate" => "“samples a second”".to_owned(),
+        "time_unit" => "a name of the column such as `time_ms`".to_owned(),
         "topic" => "a topic".to_owned(),
         "field" => "a field".to_owned(),
         name => quoted(name),

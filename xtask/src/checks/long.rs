@@ -46,12 +46,15 @@ pub fn sweeps() -> Result<()> {
     run(catalogue.env("PROPTEST_CASES", "5120").env("PROPTEST_RNG_SEED", &seed))
 }
 
-/// Tests the codes with the loops for a core without vectors, as on a Cortex-M; the host does not run these by default.
+/// Tests the codes with the loops for a core without vectors, as on a Cortex-M, and networks with the code of a
+/// Cortex-M0; the host does not run these by default.
 pub fn scalar() -> Result<()> {
-    let mut cargo = cargo("test --package host-tests --test codes");
-    run(cargo
-        .env("RUSTFLAGS", "--cfg without_vectors")
-        .env("CARGO_TARGET_DIR", paths::target().join("scalar")))
+    for tests in ["--package host-tests --test codes", "--package spikewire-network --tests"] {
+        let mut cargo = cargo(&format!("test {tests}"));
+        cargo.env("RUSTFLAGS", "--cfg without_vectors");
+        run(cargo.env("CARGO_TARGET_DIR", paths::target().join("scalar")))?;
+    }
+    Ok(())
 }
 
 /// Explores the memory orderings of the lock-free queue.

@@ -3,9 +3,62 @@
 use crate::common::{paths, progress};
 use anyhow::{Context, Result, bail};
 use std::{
-    path::Path,
-    process::{Command, Output},
+    ffi::OsStr,
+    fs, mem,
+    path::{Path, PathBuf},
+    process::{Command, ExitStatus, Output},
+    sync::{Mutex, PoisonError},
 };
+
+/// The commands that were run since they were last asked for.
+static RAN: Mutex<Vec<Ran>> = Mutex::new(Vec::new());
+
+/// A command that was run.
+pub struct Ran {
+    pub directory: PathBuf,
+    /// Program and arguments.
+    pub words: Vec<String>,
+    /// The manifest's text, if it lies outside the repository or in what is generated, and may be gone later.
+    pub manifest: Option<String>,
+}
+
+impl Ran {
+    fn new(command: &Command) -> Self {
+        let directory = command.get_current_dir().map_or_else(paths::root, PathBuf::from);
+        let words = [command.get_program()].into_iter().chain(command.get_args());
+        let words = words.map(|word| word.to_string_lossy().into_owned()).collect();
+        let mut ran = Self { directory, words, manifest: None };
+        if ran.is_cargo() {
+            let path =
+                ran.directory.join(ran.behind(&["--manifest-path"]).next().unwrap_or("Cargo.toml"));
+            if !path.starts_with(paths::root()) || path.starts_with(paths::target()) {
+                ran.manifest = fs::read_to_string(path).ok();
+            }
+        }
+        ran
+    }
+
+    pub fn is_cargo(&self) -> bool {
+        self.words
+            .first()
+            .is_some_and(|program| Path::new(program).file_name() == Some(OsStr::new("cargo")))
+    }
+
+    /// Returns the words behind these options.
+    pub fn behind(&self, options: &[&str]) -> impl Iterator<Item = &str> {
+        let pairs = self.words.windows(2).filter(|pair| options.contains(&pair[0].as_str()));
+        pairs.map(|pair| pair[1].as_str())
+    }
+}
+
+/// Returns the commands that were run since the last call.
+pub fn ran() -> Vec<Ran> {
+    mem::take(&mut *RAN.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+fn record(command: &Command) {
+    RAN.lock().unwrap_or_else(PoisonError::into_inner).push(Ran::new(command));
+}
 
 /// Prepares a program to be started at the repository's top.
 pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
@@ -34,18 +87,24 @@ pub fn lint(cargo: &mut Command) -> &mut Command {
 
 /// Prints the command, runs it with its output shown, and fails if it fails.
 pub fn run(command: &mut Command) -> Result<()> {
-    eprintln!("$ {}", shown(command));
-    let _running = progress::running(short(command));
-    let status =
-        command.status().with_context(|| format!("`{}` does not start", shown(command)))?;
+    let status = status(command)?;
     if !status.success() {
         bail!("`{}` failed: {status}", shown(command));
     }
     Ok(())
 }
 
+/// Prints the command, runs it with its output shown, and returns how it ended.
+pub fn status(command: &mut Command) -> Result<ExitStatus> {
+    eprintln!("$ {}", shown(command));
+    record(command);
+    let _running = progress::running(short(command));
+    command.status().with_context(|| format!("`{}` does not start", shown(command)))
+}
+
 /// Runs the command quietly and returns its standard output; if it fails, the error includes its messages.
 pub fn output(command: &mut Command) -> Result<String> {
+    record(command);
     let _running = progress::running(short(command));
     let Output { status, stdout, stderr } =
         command.output().with_context(|| format!("`{}` does not start", shown(command)))?;

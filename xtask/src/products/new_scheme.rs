@@ -20,8 +20,9 @@ const BY_HAND: [(&str, &str, &str); 2] = [
     ("host-tests/tests", "against the reference", "codes.rs"),
 ];
 
-/// Tables with a row for each scheme.
-const PAGES: [&str; 3] = ["src/lib.rs", "docs/schemes.md", "docs/codes.md"];
+/// Tables with a row for each scheme. A new row has the type's name alone: another scheme's words would lie.
+const PAGES: [&str; 4] =
+    ["src/lib.rs", "docs/schemes.md", "docs/codes.md", "src/scheme/fingerprint.rs"];
 
 pub fn new_scheme(args: &[String]) -> Result<()> {
     let args: Vec<&str> = args.iter().map(String::as_str).collect();
@@ -39,8 +40,9 @@ pub fn new_scheme(args: &[String]) -> Result<()> {
     }
     run(&mut cargo("fmt --package spikewire --package catalogue --package host-tests"))?;
     println!(
-        "By hand now: the law in the first, names and parameters in the second, the rows' words, and \
-         host-tests/src/reference/{module}.rs and host-tests/tests/{module}.rs, which are empty; then `cargo xtask write`.",
+        "By hand now: the law in the first, names and parameters in the second, the rows' empty cells, and \
+         host-tests/src/reference/{module}.rs and host-tests/tests/{module}.rs, which are empty; then `cargo xtask write`. \
+         `cargo test --package host-tests --test codes every_scheme` names what is missing.",
         module = names.new.module
     );
     Ok(())
@@ -125,7 +127,7 @@ impl Names {
             let text = fs::read_to_string(&page)?;
             let is_row =
                 |line: &str| line.contains('|') && replaced(line, &old.type_name, "") != line;
-            fs::write(&page, self.listed(&text, &is_row))?;
+            fs::write(&page, self.without_words(&self.listed(&text, &is_row)))?;
             files.push(page);
         }
         for (room, words, list) in BY_HAND {
@@ -140,6 +142,20 @@ impl Names {
         }
         let shown = |file: PathBuf| file.strip_prefix(root).unwrap_or(&file).display().to_string();
         Ok(files.into_iter().map(shown).collect())
+    }
+
+    /// Empties the cells of the new scheme's rows, except that with its name.
+    fn without_words(&self, page: &str) -> String {
+        let mut lines = Vec::new();
+        for line in page.lines() {
+            let is_row = line.contains('|') && line.contains(&self.new.type_name);
+            let cells = line.split('|').enumerate().map(|(place, cell)| {
+                let is_margin = place == 0 || cell.is_empty();
+                if is_margin || cell.contains(&self.new.type_name) { cell } else { " " }
+            });
+            lines.push(if is_row { cells.collect::<Vec<_>>().join("|") } else { line.to_owned() });
+        }
+        lines.join("\n") + "\n"
     }
 
     /// Duplicates each line that lists the old scheme, for the new one.

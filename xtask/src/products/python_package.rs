@@ -87,7 +87,7 @@ pub fn torch() -> Result<()> {
         ],
     )?;
     package(&python, "dev")?;
-    let tests = "-m pytest --quiet --no-header --doctest-modules bindings/python/tests/test_torch.py bindings/python/tests/test_network.py bindings/python/tests/test_notebooks.py bindings/python/tests/test_readme.py --pyargs spikewire.torch";
+    let tests = "-m pytest --quiet --no-header --doctest-modules bindings/python/tests/test_torch.py bindings/python/tests/test_arrays.py bindings/python/tests/test_users.py bindings/python/tests/test_network.py bindings/python/tests/test_notebooks.py bindings/python/tests/test_readme.py --pyargs spikewire.torch";
     run(command(&python).args(tests.split_whitespace()).env("SPIKEWIRE", host::laptop()?))?;
     run(command(&python).arg("bindings/python/examples/fleet.py"))?;
     let typed = "-m mypy --strict bindings/python/tests/typed.py";

@@ -5,7 +5,7 @@ use crate::options::{answer, whole};
 use crate::report::{Counts, Log, Report, is_stdout};
 use crate::stop::Stop;
 use crate::words::{self, tell_of};
-use anyhow::{Result, bail};
+use anyhow::{Result, anyhow, bail};
 use catalogue::run::SampleType;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -43,11 +43,12 @@ pub(crate) struct Advise {
     /// Sample type of the codecs: f32, i16, i32, or fixed point such as q16.16
     #[arg(long, default_value_t)]
     sample: SampleType,
-    /// Largest RMSE that the control loop tolerates, in the signal's unit; default: a fifth of the signal's standard
-    /// deviation, and with --loop-bandwidth, on channels named as gyroscopes or accelerometers, at most the RMSE of the
-    /// parameters with which simulated drones flew
-    #[arg(long, value_name = "RMSE", value_parser = lab::input::above_zero)]
-    max_rmse: Option<f64>,
+    /// Largest RMSE that the control loop tolerates, in the signal's unit: one for each channel, in their order, or one
+    /// for all channels if they are in one unit. Default: a fifth of the signal's standard deviation, and with
+    /// --loop-bandwidth, on axes of a gyroscope or accelerometer in a known unit, no coarser than the parameters with
+    /// which simulated drones flew
+    #[arg(long, value_name = "RMSE", value_delimiter = ',', value_parser = lab::input::above_zero)]
+    max_rmse: Vec<f64>,
     /// Maximum delay of the code, in samples
     #[arg(long, value_name = "SAMPLES")]
     max_latency: Option<f64>,
@@ -105,8 +106,8 @@ struct Summary {
 ///
 /// # Errors
 /// Returns an error if a log or the options are invalid, or if no channel of a log has a scheme that can be advised.
-/// Advice on the other logs comes first. With `-o`, also returns an error if no scheme suits all channels, or if the
-/// output cannot be written. After Ctrl-C, returns an error if logs are left.
+/// Advice on the other logs comes first. With `-o`, also returns an error if no scheme suits all channels, if a channel
+/// is left out, or if the output cannot be written. After Ctrl-C, returns an error if logs are left.
 pub(crate) fn run(options: &Advise) -> Result<()> {
     let Found { logs, is_single, .. } = options.logs.find()?;
     if (options.output.is_some() || options.picture.is_some()) && logs.len() > 1 {
@@ -173,9 +174,7 @@ impl Advise {
             draw_advised(self, (picture, path), advice, recording)?;
         }
         if let (Some(output), Some(bank)) = (&self.output, &advised.bank) {
-            let Some(flight) = bank.flight() else {
-                bail!("no scheme suits all channels: no flight is written")
-            };
+            let flight = bank.flight().map_err(|why| anyhow!("no flight is written: {why}"))?;
             let mut output = Output::open(Some(output), path)?;
             output.write_all(flight.to_toml(&bank.comments()).as_bytes())?;
             output.finish()?;
@@ -204,7 +203,7 @@ impl Advise {
         let request = AdviseRequest {
             recordings,
             sample: self.sample,
-            max_rmse: self.max_rmse,
+            max_rmse: self.max_rmse.clone(),
             max_latency: self.max_latency,
             loop_bandwidth: self.loop_bandwidth,
             frame_loss: self.frame_loss,

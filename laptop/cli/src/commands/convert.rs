@@ -13,19 +13,22 @@ use std::path::PathBuf;
 /// Convert events from one format to another.
 ///
 /// FORMAT is `link` (spikewire's own frames), `edvs:e0` to `edvs:e4` (the number is the camera's time format), `es`
-/// (Event Stream), `evt2` (a .raw file), `eieio` (consecutive datagrams) or `csv` (`tick,address,polarity`).
+/// (Event Stream), `evt2`, `evt21` (read only) or `evt3` (.raw files), `eieio` (consecutive datagrams) or `csv`
+/// (`tick,address,polarity`, or `tick,x,y,polarity` for the events of a camera).
 ///
 /// Settings follow the format's name after commas. The settings of `link,period=5000,channels=6,jitter=5` only make
 /// frames shorter. `period` is the time between samples in µs, `channels` is the number of channels, and `jitter` is
 /// the number of bits for the jitter of times in µs, with its sign. In `edvs:e2,up=0`, the polarity bit is 0 for up and
 /// 1 for down. In `eieio,base=0x70000,step=1000,signed=1`, `base` is the key (number in a datagram) of address 0, and
 /// `step` is the length of a time step in µs. With `signed=1`, each address has two keys: the first for down, the
-/// second for up.
+/// second for up. `es,width=320,height=240` (also of `evt2` and `evt3`) is the size of a camera's picture, if the input does
+/// not say it. `evt2,pixels=1` reads columns and rows from a stream without a header.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   spikewire convert --from csv --to es spikes.csv -o flight.es
   spikewire convert --from link --to csv captured.bytes
+  spikewire convert --from evt3 --to csv camera.raw
   spikewire convert --from csv --to link,period=5000,channels=6 --from-zero spikes.csv -o flight.link")]
 pub(crate) struct Convert {
     /// File of events; `-` is standard input
@@ -53,7 +56,7 @@ pub(crate) fn run(options: &Convert) -> Result<()> {
     let mut port = Port::open(input, None)?;
     let mut output = Output::open(output.as_deref(), input)?;
     let mut stream =
-        Stream::new(from.reader(port.name()), to.writer(stream.drop), stream.from_zero);
+        Stream::new(from.reader(port.name()), to.writer(stream.drop)?, stream.from_zero);
     let mut buffer = vec![0; 1 << 16];
     loop {
         match port.read(&mut buffer)? {

@@ -20,7 +20,8 @@ use std::thread;
 /// the log's spikes in the columns `index`, `channel` and `polarity`, with `neuron` if a channel has several neurons,
 /// and `time_us` if the log has times. `values/NAME.parquet` holds the samples that were encoded. `manifest.jsonl`
 /// holds a row for each log. A row has the hash of the log, the number of samples read, the number of samples left out,
-/// and whether the log is for training or testing. If a log cannot be read, its row gives the reason.
+/// and whether the log is for training or testing, which its hash decides. If a log cannot be read, its row gives the
+/// reason.
 ///
 /// The same command, given again, continues a run that was interrupted or killed. A log that has changed is encoded
 /// again. `decode --spikes` turns a Parquet file of spikes into the file that `encode` writes.
@@ -44,7 +45,8 @@ pub(crate) struct Dataset {
     /// Directory to write; a directory that an earlier run left incomplete is completed
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// Share of the flights to use for testing, 0 to 1
+    /// Share of the flights to use for testing, 0 to 1, about: each flight goes by its own hash, so that other logs never
+    /// change its side
     #[arg(long, value_name = "SHARE", default_value_t = 0.2)]
     test: f64,
     /// Count all logs of a directory as one flight, which is wholly for training or wholly for testing; default: each
@@ -73,7 +75,8 @@ pub(crate) fn run(options: &Dataset) -> Result<()> {
         bar.set_message(progress.words.clone());
     })?;
     bar.finish_and_clear();
-    let Outcome { logs, done_before, refused, passed_over, samples, events, train, test } = outcome;
+    let Outcome { logs, done_before, gone, refused, passed_over, samples, events, train, test } =
+        outcome;
     if options.json {
         Report { command: "dataset", logs: &rows, summary: outcome }.print()?;
     } else {
@@ -84,11 +87,16 @@ pub(crate) fn run(options: &Dataset) -> Result<()> {
         for (count, what) in [
             (done_before, "logs were done before"),
             (refused, "logs are refused; the manifest has the reasons"),
+            (gone, "logs are gone, and have no row any more; their files stay"),
             (passed_over, "files are neither logs nor tables"),
         ] {
             if count > 0 {
                 writeln!(text, "{count} {what}")?;
             }
+        }
+        let is_empty = |share: f64, count: usize| share > 0.0 && count == 0 && encoded > 0;
+        if is_empty(options.test, test) || is_empty(1.0 - options.test, train) {
+            text += "one side has no flight: each goes by its own hash, so that a few may all be on one; --test gives another share\n";
         }
         answer(text)?;
     }

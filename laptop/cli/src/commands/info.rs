@@ -1,6 +1,6 @@
 //! `spikewire info`: lists the content of a log or a table.
 
-use crate::inputs::{LogOptions, as_file};
+use crate::inputs::{LogOptions, as_file, units};
 use crate::report::{Counts, Log, Report};
 use crate::words;
 use anyhow::Result;
@@ -8,7 +8,9 @@ use clap::Args;
 use flight_logs::Kind;
 use lab::dataset::{self, Found};
 use lab::input::messages::{Overview, overview};
-use lab::input::{ChannelOptions, Clock, InputOptions, Rollover, Summary, above_zero, summary};
+use lab::input::{
+    ChannelOptions, Clock, InputOptions, Rollover, Summary, TimeUnit, above_zero, summary,
+};
 use lab::output::Output;
 use serde_json::json;
 use std::io::Write;
@@ -30,6 +32,12 @@ pub(crate) struct Info {
     /// Report time steps longer than this multiple of the usual step
     #[arg(long, default_value_t = 1.5, value_parser = above_zero)]
     gap: f64,
+    /// Unit of a table's times; default: the unit in the column's name, or else a guess from its values
+    #[arg(long, value_name = "UNIT", value_parser = units())]
+    time_unit: Option<TimeUnit>,
+    /// Line of a table that holds the names of the columns, counted from 1; default: found where it is sure
+    #[arg(long, value_name = "LINE", value_parser = clap::value_parser!(u64).range(1..))]
+    header: Option<u64>,
     /// Read the undamaged part of a log that is cut short or damaged
     #[arg(long)]
     accept_cut: bool,
@@ -87,13 +95,14 @@ impl Info {
     /// # Errors
     /// Returns an error if the file cannot be read.
     fn content(&self, log: &Path) -> Result<Content> {
-        let Self { gap, accept_cut, .. } = *self;
+        let Self { gap, accept_cut, time_unit, header, .. } = *self;
         let kind = if log == Path::new("-") { None } else { Kind::of(log)? };
         if let Some(kind) = kind {
             let (topics, notes) = overview(log, kind, accept_cut, gap)?;
             return Ok(Content::Log(kind, topics, notes));
         }
-        let channel = ChannelOptions { gap, accept_cut, ..ChannelOptions::default() };
+        let default = ChannelOptions::default();
+        let channel = ChannelOptions { gap, accept_cut, time_unit, header, ..default };
         let table = summary(&InputOptions { input: log.to_owned(), channel })?;
         Ok(Content::Table(Box::new(table)))
     }
@@ -138,6 +147,7 @@ impl Content {
                             "texts": own.texts,
                             "unread": own.unread,
                             "missing": own.missing,
+                            "stamp": own.stamp,
                         });
                         add_times(&mut all, &own.clock, &own.rollover);
                         all
@@ -219,6 +229,9 @@ fn write(topic: &Overview, output: &mut impl Write) -> Result<()> {
     }
     if let Some(note) = rollover.note() {
         writeln!(output, "  {note}")?;
+    }
+    if let Some(stamp) = topic.stamp {
+        writeln!(output, "  times are the sensor's own, `{stamp}`")?;
     }
     if topic.missing > 0 {
         writeln!(

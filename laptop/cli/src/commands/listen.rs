@@ -174,7 +174,7 @@ fn listen(
     let mut file = is_written.then(open).transpose()?;
     let (reader, writer): (Box<dyn EventReader + '_>, _) = match values {
         Some((values, sample)) => (Box::new(LinkReader::new(Some(values))), values_writer(sample)),
-        None => (options.from.reader(port.name()), options.to.writer(options.stream.drop)),
+        None => (options.from.reader(port.name()), options.to.writer(options.stream.drop)?),
     };
     let mut stream = Stream::new(reader, writer, options.stream.from_zero);
     let mut live = Live::new(options.output.is_none());

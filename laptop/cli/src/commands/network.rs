@@ -567,4 +567,10 @@ fn tell(figures: &Figures, network: &dyn OnChip) {
     if figures.lost > 0 {
         eprintln!("warning: {} spikes were lost: {}", figures.lost, network.loss());
     }
+    if figures.clipped > 0 {
+        eprintln!(
+            "warning: in {} steps an output reached the end of its 16 bits; in flight, `run` returns `Clipped` then",
+            figures.clipped
+        );
+    }
 }

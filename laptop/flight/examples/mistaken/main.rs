@@ -10,7 +10,7 @@ use spikewire_flight::Flight;
 use std::{env, error::Error, fmt::Write, fs, path::Path};
 
 /// Flights whose bits `tests/both_ends.rs` compares.
-const FLOWN: [&str; 4] = ["asf", "grf_slots", "sf", "sod"];
+const FLOWN: [&str; 6] = ["asf", "first_order", "grf_slots", "notch", "sf", "sod"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let directory = env::args().nth(1).ok_or("no directory")?;

@@ -1,11 +1,10 @@
 //! Advice on one scheme for all channels together. The schemes are ranked by bytes a second on the link.
 
 use super::flown::{Error, Flown, flown};
-use super::{Advice, AdviseRequest, Tuning};
+use super::{Advice, AdviseRequest, CUT_SHORT, Errors, Tuning};
 use crate::Result;
 use crate::brief::{brief, short};
 use crate::flight::{CLOCK_PPM, Channel, Filter, Flight, Parts, period};
-use crate::look::known_unit;
 use crate::scheme::Scheme;
 use crate::trial::{Recording, Trial};
 use crate::tune::RequestKind;
@@ -13,7 +12,7 @@ use crate::tune::report::Row;
 use crate::tune::search::Budget;
 use crate::watch::{Progress, Watch};
 use catalogue::run::{Asked, Event as Fired, Value};
-use catalogue::{Kind, Parameter};
+use catalogue::{Kind, Parameter, Search};
 use serde::Serialize;
 use spikewire::link::{MAX_FRAME, Session, Transmitter};
 use spikewire::{Event, FromItems, Item, Keyframe, Tick};
@@ -25,6 +24,10 @@ const SLOWEST: f64 = 250.0;
 /// request has a control loop, a scheme whose simulated flights had keyframes keeps the time of those flights instead.
 const KEYFRAMES: f64 = 1.0;
 
+/// Number of items in the smallest queue of the example firmware for a flight file. All events of a sample must fit, and
+/// a keyframe of each channel.
+const QUEUE: usize = 256;
+
 /// The advice on all channels together.
 #[derive(Debug, Serialize)]
 pub struct BankAdvice {
@@ -32,10 +35,22 @@ pub struct BankAdvice {
     banks: Vec<Bank>,
     /// The schemes that cannot serve all channels, each with the reason.
     others: Vec<String>,
-    /// The names of the channels that are unfit for tuning. The [`Advice`] on each such channel gives the reason.
+    /// The names of the channels that are unfit for tuning, and that no bank has. The [`Advice`] on each such channel gives
+    /// the reason.
     left_out: Vec<String>,
+    /// The reasons that channels are left out.
+    #[serde(skip)]
+    reasons: Vec<String>,
+    /// The names of the channels that are unfit for tuning, and therefore coded as they flew.
+    as_flown: Vec<String>,
+    /// The reason that no frame of the link can be sent at this sample rate, if there is one.
+    unsent: Option<String>,
+    /// Whether a search for settings was cut short, by the time limit or by the user.
+    is_cut_short: bool,
     /// Questions that the advice leaves open, such as how the user's drone flies with the code.
     unknown: Vec<String>,
+    /// Reasons not to trust what is advised on a channel.
+    warnings: Vec<String>,
     /// Share of frames that the link loses, in percent.
     frame_loss: f64,
 }
@@ -50,11 +65,17 @@ struct Bank {
     events_per_second: f64,
     /// Number of samples from one keyframe to the next.
     keyframe_every: u32,
+    /// Maximum number of events of a sample, over all channels.
+    most_events: usize,
     /// Whether the scheme's simulated flights used a filter that the recordings' sample rate does not allow.
     lacks_filter: bool,
     /// Mean attitude error of the simulated drone at the requested frame loss, with and without the code. `None` if no
-    /// flights with the code were simulated.
+    /// flights with the code were simulated, or none with parameters as coarse as these.
     flown: Option<Error>,
+    /// The channels on which the bank is coarser than the one that flew.
+    coarser: Vec<String>,
+    /// Whether a search for settings that all channels can share was cut short.
+    is_cut_short: bool,
     channels: Vec<BankChannel>,
     #[serde(skip)]
     flight: Flight,
@@ -63,8 +84,14 @@ struct Bank {
 #[derive(Debug, Serialize)]
 struct BankChannel {
     name: String,
+    unit: String,
     parameters: String,
+    /// RMSE of the whole recording beside the signal behind the filter.
     rmse: f64,
+    /// The same on held-out blocks. `None` if the channel was not tuned.
+    held_out: Option<f64>,
+    /// RMSE of the whole recording beside its samples, before the filter.
+    rmse_of_samples: f64,
 }
 
 impl BankAdvice {
@@ -76,48 +103,69 @@ impl BankAdvice {
     pub fn new(request: &AdviseRequest, advice: &[Advice], watch: &Watch) -> Result<Self> {
         let pairs = || advice.iter().zip(&request.recordings);
         let heard: Vec<(&Advice, &Recording)> =
-            pairs().filter(|(own, _)| own.objection.is_none()).collect();
-        let objected = advice.iter().filter(|own| own.objection.is_some());
-        let left_out = objected.map(|own| own.look.name.clone()).collect();
+            pairs().filter(|(own, _)| own.objection.is_none() || own.is_coded_as_flown()).collect();
+        let objected = || advice.iter().filter(|own| own.objection.is_some());
+        let left_out = || objected().filter(|own| !own.is_coded_as_flown());
+        let as_flown = objected().filter(|own| own.is_coded_as_flown());
         let mut all = Self {
             banks: Vec::new(),
             others: Vec::new(),
-            left_out,
+            left_out: left_out().map(|own| own.look.name.clone()).collect(),
+            reasons: left_out().filter_map(|own| own.objection.clone()).collect(),
+            as_flown: as_flown.map(|own| own.look.name.clone()).collect(),
+            unsent: None,
+            is_cut_short: heard.iter().any(|(own, _)| own.is_cut_short),
             unknown: Vec::new(),
+            warnings: Vec::new(),
             frame_loss: request.frame_loss,
         };
-        let Some((advised, first)) = heard.first() else { return Ok(all) };
+        let Some((advised, first)) = heard.iter().find(|(own, _)| own.objection.is_none()) else {
+            return Ok(all);
+        };
         all.others.clone_from(&advised.unflown);
         let rate = first.rate.ok_or(RequestKind::BankNeedsRate)?;
-        all.unknown = unknown(request, rate);
-        let unnamed = heard.iter().filter(|(own, _)| own.flown.is_none());
-        let unnamed: Vec<_> = unnamed.map(|(_, own)| own.name.as_str()).collect();
-        if request.loop_bandwidth.is_some() && request.max_rmse.is_none() && !unnamed.is_empty() {
-            all.unknown.push(format!(
-                "whether it is as fine as what flew, on {}: their names tell no unit; an RMSE that the loop bears would tell",
-                unnamed.join(", ")
-            ));
+        if let Err(error) = period(rate) {
+            all.unsent = Some(error.to_string());
+            return Ok(all);
         }
+        all.unknown = unknown(request, rate, &heard);
+        all.warnings = heard.iter().filter_map(|(own, _)| own.warning.clone()).collect();
         let schemes: Vec<Scheme> = Scheme::all().collect();
         for (done, scheme) in schemes.iter().enumerate() {
             let words = format!("bank of {}", scheme.name());
             (watch.tell)(&Progress { done, total: schemes.len(), words });
-            let rows: Option<Vec<&Row>> = heard.iter().map(|(own, _)| own.row(*scheme)).collect();
-            // The reason stands on the page of the channel that no setting suits.
-            let Some(rows) = rows else { continue };
-            match bank(request, *scheme, &heard, &rows, rate, watch)? {
-                Ok(bank) => all.banks.push(bank),
+            match bank(request, *scheme, &heard, rate, watch)? {
+                Ok(Some(bank)) => all.banks.push(bank),
+                // The reason stands on the page of the channel that no setting suits.
+                Ok(None) => {}
                 Err(words) => all.others.push(format!("{} {words}", scheme.name())),
             }
         }
+        all.is_cut_short |= all.banks.iter().any(|own| own.is_cut_short);
         all.banks.sort_by(|a, b| a.bytes_per_second.total_cmp(&b.bytes_per_second));
         Ok(all)
     }
 
-    /// Returns the advised scheme and channels, in the form of a file `flight.toml`. Returns `None` if no scheme is
-    /// advised.
-    pub fn flight(&self) -> Option<&Flight> {
-        self.banks.first().map(|bank| &bank.flight)
+    /// Returns the advised scheme and channels, in the form of a file `flight.toml`, of all channels.
+    ///
+    /// # Errors
+    /// Returns the reason if no scheme is advised, or if a channel is left out.
+    pub fn flight(&self) -> Result<&Flight, String> {
+        if let Some(reason) = &self.unsent {
+            return Err(reason.clone());
+        }
+        let Some(bank) = self.banks.first() else { return Err(self.none()) };
+        if !self.left_out.is_empty() {
+            return Err(format!("its bank would lack channels: {}", self.reasons.join("; ")));
+        }
+        Ok(&bank.flight)
+    }
+
+    /// Says that no scheme suits all channels, and what helps.
+    fn none(&self) -> String {
+        "no scheme suits all channels, for the reasons on their pages; fewer channels, a larger RMSE given for each, or a \
+         recording of livelier flight may help"
+            .to_owned()
     }
 
     /// Returns the name of the advised scheme, if there is one.
@@ -149,12 +197,13 @@ impl BankAdvice {
                 "take {} for all channels, in {}{with}",
                 best.scheme, best.flight.sample
             ));
-            for BankChannel { name, parameters, rmse } in &best.channels {
-                lines.push(format!("  {name}: {parameters}; RMSE {}", short(*rmse)));
+            for channel in &best.channels {
+                lines.push(format!("  {}", channel.words(best.flight.filter.is_some())));
             }
             lines.push(format!(
-                "{:.0} events and {:.0} bytes a second, with a keyframe every {} samples",
-                best.events_per_second, best.bytes_per_second, best.keyframe_every
+                "{:.0} events and {:.0} bytes a second, with a keyframe every {} samples; {} events a sample at most, \
+                 which a queue must hold",
+                best.events_per_second, best.bytes_per_second, best.keyframe_every, best.most_events
             ));
             if let Some(filter) = best.flight.filter {
                 lines.push(format!("{} before the code: vibration takes spikes", words(filter)));
@@ -174,48 +223,90 @@ impl BankAdvice {
                     self.frame_loss
                 ));
             }
+            if !best.coarser.is_empty() {
+                lines.push(format!(
+                    "not known: how any drone flies on it: coarser than what flew on {}",
+                    best.coarser.join(", ")
+                ));
+            }
             let next = self.banks.iter().skip(1).take(3);
             let next = next.map(|own| format!("{} {:.0}", own.scheme, own.bytes_per_second));
             let next = next.collect::<Vec<_>>().join(", ");
             if !next.is_empty() {
                 lines.push(format!("next: {next}"));
             }
+        } else if let Some(reason) = &self.unsent {
+            lines.push(format!("none: {reason}"));
         } else {
-            lines.push("none: no scheme suits all channels".to_owned());
+            lines.push(format!("none: {}", self.none()));
+        }
+        lines.extend(self.warnings.iter().map(|words| format!("! {words}")));
+        if self.is_cut_short {
+            lines.push(format!("! {CUT_SHORT}"));
         }
         if !self.others.is_empty() {
             lines.push(format!("not: {}", self.others.join("; ")));
         }
         if !self.left_out.is_empty() {
-            lines.push(format!("left out, as their pages say: {}", self.left_out.join(", ")));
+            lines.push(format!("left out, as unfit for tuning: {}", self.left_out.join(", ")));
+        }
+        if !self.as_flown.is_empty() {
+            let names = self.as_flown.join(", ");
+            lines.push(format!("coded as it flew, as too still for tuning: {names}"));
         }
         lines.extend(self.unknown.iter().map(|words| format!("not known: {words}")));
         lines.into_iter()
     }
 }
 
-/// Makes a bank: one scheme, with settings for all channels. If the scheme cannot serve all channels, returns
-/// `Ok(Err(reason))`.
+impl BankChannel {
+    fn words(&self, is_filtered: bool) -> String {
+        let Self { name, unit, parameters, rmse, held_out, rmse_of_samples } = self;
+        let space = if unit.is_empty() { "" } else { " " };
+        let held_out = held_out.map_or(String::new(), |own| format!(" ({} held out)", short(own)));
+        let beside = if is_filtered {
+            format!(" of the filtered signal, {} beside its samples", short(*rmse_of_samples))
+        } else {
+            String::new()
+        };
+        format!("{name}: {parameters}; RMSE {}{space}{unit}{held_out}{beside}", short(*rmse))
+    }
+}
+
+/// Makes a bank: one scheme, with settings for all channels. Returns `Ok(Ok(None))` if no settings of the scheme suit a
+/// channel, and `Ok(Err(reason))` if the channels cannot share the scheme.
 fn bank(
     request: &AdviseRequest,
     scheme: Scheme,
     heard: &[(&Advice, &Recording)],
-    rows: &[&Row],
     rate: f64,
     watch: &Watch,
-) -> Result<Result<Bank, String>> {
+) -> Result<Result<Option<Bank>, String>> {
+    let tuned = heard.iter().filter(|(own, _)| own.objection.is_none());
+    let rows: Option<Vec<&Row>> = tuned.map(|(own, _)| own.row(scheme)).collect();
+    let Some(rows) = rows else { return Ok(Ok(None)) };
     let in_loop = request.loop_bandwidth.is_some();
     let flown = flown(scheme.name()).filter(|_| in_loop);
     let apart = flown.and_then(Flown::keyframes).unwrap_or(KEYFRAMES);
-    let shared = shared(scheme, rows);
-    let mut channels = Vec::new();
-    let mut parts = Vec::new();
-    for ((advice, recording), row) in heard.iter().zip(rows) {
-        let own = row.settings.to_asked(scheme.info());
-        let has_shared = shared.iter().all(|(name, value)| own.get(name) == Some(value));
-        let mut asked = own;
-        let mut rmse = row.tuned_on.rmse;
-        if !has_shared {
+    let shared = shared(scheme, &rows, heard.len());
+    let mut is_cut_short = false;
+    let (mut parts, mut held_out) = (Vec::new(), Vec::new());
+    for (advice, recording) in heard {
+        let mut asked = match advice.row(scheme) {
+            Some(row) => {
+                held_out.push(row.held_out.map(|own| own.rmse));
+                row.settings.to_asked(scheme.info())
+            }
+            // A channel that is unfit for tuning is coded as it flew.
+            None => match advice.flown_parameters(scheme) {
+                Some(asked) => {
+                    held_out.push(None);
+                    shared.or(&asked)
+                }
+                None => return Ok(Err(format!("did not fly, as {} needs", recording.name))),
+            },
+        };
+        if shared.iter().any(|(name, value)| asked.get(name) != Some(value)) {
             let budget = Budget {
                 evaluations: request.evaluations,
                 deadline: None,
@@ -224,8 +315,10 @@ fn bank(
             };
             match advice.tuned(request, scheme, recording, &shared, &budget)? {
                 Tuning::Reached(own) => {
+                    is_cut_short |= own.row.is_cut_short;
+                    held_out.pop();
+                    held_out.push(own.row.held_out.map(|own| own.rmse));
                     asked = own.row.settings.to_asked(scheme.info());
-                    rmse = own.row.tuned_on.rmse;
                 }
                 Tuning::Missed(words) => {
                     let name = &recording.name;
@@ -234,13 +327,10 @@ fn bank(
             }
         }
         shared.iter().for_each(|(name, _)| asked.unset(name));
-        let parameters =
-            brief(&asked.iter().map(|(name, value)| (name, value.clone())).collect::<Vec<_>>());
-        channels.push(BankChannel { name: recording.name.clone(), parameters, rmse });
         parts.push(Channel {
             name: recording.name.clone(),
             source: recording.name.clone(),
-            unit: known_unit(&recording.name).unwrap_or_default().to_owned(),
+            unit: advice.unit(),
             counts: 1.0,
             asked,
         });
@@ -259,23 +349,67 @@ fn bank(
         Ok(flight) => flight,
         Err(error) => return Ok(Err(format!("makes no bank: {error}"))),
     };
-    let (events, bytes) = sent(&flight, scheme, heard, in_loop)?;
-    let seconds = heard[0].1.values.len() as f64 / rate;
-    Ok(Ok(Bank {
+    let mut trials = Vec::new();
+    let (mut channels, mut coarser) = (Vec::new(), Vec::new());
+    for (((advice, recording), channel), held_out) in
+        heard.iter().zip(&flight.channels).zip(held_out)
+    {
+        let ready = advice.ready(request, scheme, recording)?;
+        let trial = Trial::new(scheme, &flight.asked(channel), flight.sample, ready.recording())?;
+        let errors = Errors::of(ready.recording(), &trial.decoded);
+        if ready.flown.is_none_or(|(_, flown)| !errors.are_within(flown)) {
+            coarser.push(recording.name.clone());
+        }
+        let asked = channel.asked.iter().map(|(name, value)| (name, value.clone()));
+        channels.push(BankChannel {
+            name: recording.name.clone(),
+            unit: channel.unit.clone(),
+            parameters: brief(&asked.collect::<Vec<_>>()),
+            rmse: errors.rmse,
+            held_out,
+            rmse_of_samples: Errors::of(recording, &trial.decoded).rmse,
+        });
+        trials.push(trial);
+    }
+    // Channels whose unit is unknown are among the open questions.
+    let unknown = |name: &String| {
+        heard.iter().any(|(own, _)| own.inertial.is_none() && own.look.name == *name)
+    };
+    let lacks_filter = flown.is_some_and(|own| own.filter().is_some()) && flight.filter.is_none();
+    let is_as_flown = coarser.is_empty() && !lacks_filter;
+    let samples = heard.iter().map(|(_, own)| own.values.len()).min().unwrap_or_default() as u64;
+    let (events, bytes) = sent(&flight, &trials, samples, in_loop)?;
+    let seconds = samples as f64 / rate;
+    Ok(Ok(Some(Bank {
         scheme: scheme.name(),
         bytes_per_second: bytes as f64 / seconds,
         events_per_second: events as f64 / seconds,
         keyframe_every: flight.keyframe_every,
-        lacks_filter: flown.is_some_and(|own| own.filter().is_some()) && flight.filter.is_none(),
-        flown: flown.and_then(|own| own.error(request.frame_loss)),
+        most_events: most_events(&flight),
+        lacks_filter,
+        flown: flown.filter(|_| is_as_flown).and_then(|own| own.error(request.frame_loss)),
+        coarser: coarser.into_iter().filter(|own| in_loop && !unknown(own)).collect(),
+        is_cut_short,
         channels,
         flight,
-    }))
+    })))
+}
+
+/// Returns the maximum number of events of a sample, over all channels.
+fn most_events(flight: &Flight) -> usize {
+    let spikes = flight.settings()[0].count("spikes", 1..=usize::MAX).unwrap_or(1);
+    flight.events().max(flight.channels.len() * spikes)
 }
 
 /// Lists the questions that the advice leaves open, such as how the user's drone flies with the code.
-fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
+fn unknown(request: &AdviseRequest, rate: f64, heard: &[(&Advice, &Recording)]) -> Vec<String> {
     let mut all = Vec::new();
+    let with = |is_it: fn(&Advice) -> bool| {
+        let names = heard.iter().filter(|(own, _)| is_it(own)).map(|(_, own)| own.name.as_str());
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let assumed = with(|own| own.inertial.as_ref().is_some_and(|axis| axis.is_assumed));
+    let unnamed = with(|own| own.inertial.is_none());
     if request.loop_bandwidth.is_none() {
         all.push(
             "whether a control loop flies on it: given its bandwidth, codes that do not fly are left out"
@@ -289,6 +423,18 @@ fn unknown(request: &AdviseRequest, rate: f64) -> Vec<String> {
                 short(rate.round())
             ));
         }
+    }
+    if !assumed.is_empty() {
+        all.push(format!(
+            "the units of {assumed}: taken to be rad/s and m/s², as neither log nor name tells them; a name such as \
+             gyro_x_dps or accel_z_g does"
+        ));
+    }
+    if request.loop_bandwidth.is_some() && !unnamed.is_empty() {
+        all.push(format!(
+            "whether it is as fine as what flew, on {unnamed}: they are no axes in a known unit; an RMSE that the loop \
+             bears would tell"
+        ));
     }
     all.push("what this log did not do: faster turns, a harder landing, other rotors".to_owned());
     all.push("the sensor's counts: samples are in the log's unit, until `counts` and `sample` in the file say otherwise".to_owned());
@@ -305,8 +451,9 @@ fn words(filter: Filter) -> String {
 }
 
 /// Returns the parameters that all channels of a bank must share, each with one value. A parameter that is a count gets
-/// the largest value among the channels. Any other parameter gets the value of the first channel.
-fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
+/// the largest value among the channels; but the largest number of spikes of a sample is such that those of `channels`
+/// channels fit a queue. Any other parameter gets the value of the first channel.
+fn shared(scheme: Scheme, rows: &[&Row], channels: usize) -> Asked {
     let mut shared = Asked::default();
     let is_shared = |own: &&Parameter| own.is_recorded && own.kind != Kind::Number;
     for parameter in scheme.info().parameters.iter().filter(is_shared) {
@@ -316,34 +463,26 @@ fn shared(scheme: Scheme, rows: &[&Row]) -> Asked {
             (None, own) => Some(own.clone()),
             _ => most,
         };
-        if let Some(value) = values.fold(None, largest) {
+        let value = match (values.fold(None, largest), parameter.search) {
+            (Some(Value::Count(count)), Some(Search::Most(least, _))) => Some(Value::Count(
+                count.min((QUEUE / channels).saturating_sub(1).max(least as usize) as u64),
+            )),
+            (value, _) => value,
+        };
+        if let Some(value) = value {
             shared.set(parameter.name, value);
         }
     }
     shared
 }
 
-/// Returns the total number of events of all channels, and the number of bytes that the link sends, including
-/// keyframes. If `in_loop` is true, each sample is sent in a frame of its own, as a control loop needs it. Otherwise,
+/// Returns the total number of events of all channels, and the number of bytes that the link sends for `samples` samples,
+/// including keyframes. If `in_loop` is true, each sample is sent in a frame of its own, as a control loop needs it. Otherwise,
 /// events of several samples share a frame.
-fn sent(
-    flight: &Flight,
-    scheme: Scheme,
-    heard: &[(&Advice, &Recording)],
-    in_loop: bool,
-) -> Result<(usize, usize)> {
-    let trials = heard.iter().zip(&flight.channels).map(|((advice, recording), channel)| {
-        let filter = advice.filter(scheme, flight.sample);
-        let recording = match &filter {
-            Some(filter) => &recording.filtered(|| filter.start()),
-            None => *recording,
-        };
-        Trial::new(scheme, &flight.asked(channel), flight.sample, recording)
-    });
-    let trials: Vec<Trial> = trials.collect::<Result<_>>()?;
+fn sent(flight: &Flight, trials: &[Trial], samples: u64, in_loop: bool) -> Result<(usize, usize)> {
     let (neurons, period) = (flight.neurons() as u16, u64::from(flight.period.get()));
     let mut events: Vec<Fired> = Vec::new();
-    for (channel, trial) in (0..).zip(&trials) {
+    for (channel, trial) in (0..).zip(trials) {
         let own = trial.events.iter();
         events.extend(own.map(|own| Fired { neuron: channel * neurons + own.neuron, ..*own }));
     }
@@ -352,7 +491,6 @@ fn sent(
     let mut transmitter = Transmitter::new(flight.coding(), Session::counted(0))
         .with_fingerprint(flight.fingerprint());
     let (mut items, mut bytes, mut buffer) = (Vec::new(), 0, [0; MAX_FRAME]);
-    let samples = heard.iter().map(|(_, own)| own.values.len()).min().unwrap_or_default() as u64;
     for sample in 0..samples {
         let tick = Tick::from_micros(sample * period);
         let own = rest.iter().take_while(|own| own.sample <= sample).count();
@@ -363,8 +501,8 @@ fn sent(
             Item::Event(Event { tick, address: own.neuron, polarity: own.polarity })
         }));
         if sample.is_multiple_of(flight.keyframe_every.into()) {
-            if scheme.info().has_first_value() {
-                items.extend((0..).zip(&trials).map(|(channel, trial)| {
+            if flight.scheme.has_first_value() {
+                items.extend((0..).zip(trials).map(|(channel, trial)| {
                     let value = trial.decoded.get(sample as usize).copied().unwrap_or_default();
                     Item::Keyframe(Keyframe::new(tick, channel * neurons, value as f32))
                 }));

@@ -3,6 +3,7 @@
 
 use crate::flight::Filter;
 use crate::scheme::Scheme;
+use crate::unit::Inertial;
 use catalogue::Unit;
 use catalogue::run::{Asked, Value};
 use serde::{Deserialize, Serialize};
@@ -106,63 +107,8 @@ pub fn verdict(scheme: &str) -> Option<Verdict> {
     })
 }
 
-/// A channel of an inertial sensor, as its name tells it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Inertial {
-    /// Position of the channel's parameters among the groups of a bank.
-    group: usize,
-    /// The number that stands for 1 rad/s or 1 m/s² in the log.
-    unit: f64,
-}
-
-impl Inertial {
-    /// Returns the group and unit of the channel `name`. Returns `None` if the name tells neither an axis of a gyroscope
-    /// nor one of an accelerometer, or if the unit is unknown. The axis is `x`, `y`, `z`, `0`, `1` or `2` at the end of
-    /// the name, before the unit if there is one; `MAVLink` writes it first, as in `xgyro`.
-    pub(crate) fn named(name: &str) -> Option<Self> {
-        const RATES: [&str; 5] =
-            ["gyr", "angular_velocity", "angular_rate", "rotation_rate", "body_rate"];
-        const FORCES: [&str; 3] = ["acc", "linear_acceleration", "specific_force"];
-        /// Words of units.
-        const UNITS: [&str; 9] = ["rad", "deg", "dps", "m", "s", "s2", "s²", "g", "mg"];
-        /// 1 g in m/s².
-        const G: f64 = 9.806_65;
-        let name = name.to_ascii_lowercase();
-        let has = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
-        let words = || name.split(|own: char| !own.is_alphanumeric());
-        let is_rate = has(&RATES);
-        if !is_rate && !has(&FORCES) || has(&["accsmooth", "accuracy", "raw_imu"]) {
-            return None;
-        }
-        let last = words().rfind(|own| !own.is_empty() && !UNITS.contains(own))?;
-        let is_mavlink = matches!(last, "xgyro" | "ygyro" | "zgyro" | "xacc" | "yacc" | "zacc");
-        let mut letters = last.chars();
-        let letter = if is_mavlink { letters.next() } else { letters.next_back() };
-        let is_along_thrust = match letter? {
-            'x' | 'y' | '0' | '1' => false,
-            'z' | '2' => true,
-            _ => return None,
-        };
-        let is_word = |unit: &str| words().any(|own| own == unit);
-        let unit = if has(&["highres_imu", "hil_sensor"]) {
-            1.0
-        } else if is_rate && has(&["deg", "dps", "gyroadc", "gyrounfilt"]) {
-            180.0 / std::f64::consts::PI
-        } else if is_rate {
-            if is_mavlink { 1000.0 } else { 1.0 }
-        } else if is_mavlink || is_word("mg") {
-            1000.0 / G
-        } else if is_word("g") {
-            1.0 / G
-        } else {
-            1.0
-        };
-        Some(Self { group: if is_rate { 0 } else { 1 + usize::from(is_along_thrust) }, unit })
-    }
-}
-
 /// Returns the parameters with which a scheme flew on this channel, in the unit of the log.
-pub(crate) fn parameters(scheme: Scheme, channel: Inertial) -> Option<Asked> {
+pub(crate) fn parameters(scheme: Scheme, channel: &Inertial) -> Option<Asked> {
     let group = PARAMETERS.get(scheme.name())?.groups.get(channel.group)?;
     let mut asked = Asked::default();
     for (name, value) in group.as_object()? {
@@ -170,7 +116,7 @@ pub(crate) fn parameters(scheme: Scheme, channel: Inertial) -> Option<Asked> {
         let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         let value = match parameter.read(&text).ok()? {
             Value::Number(number) if parameter.unit == Unit::Signal => {
-                Value::Number(number * channel.unit)
+                Value::Number(number * channel.per_si)
             }
             value => value,
         };
@@ -253,43 +199,15 @@ impl Flown {
 
 #[cfg(test)]
 mod tests {
-    use super::{BANKS, Inertial, LOSSES, flown, objection, parameters, verdict, without_a_code};
+    use super::{BANKS, LOSSES, flown, objection, parameters, verdict, without_a_code};
     use crate::scheme::Scheme;
-
-    #[test]
-    fn channels_are_known_by_their_names() {
-        let of = |name| Inertial::named(name).map(|own| (own.group, own.unit.round()));
-        assert_eq!(of("gyro_x"), Some((0, 1.0)));
-        assert_eq!(of("imu.angular_velocity.z"), Some((0, 1.0)));
-        assert_eq!(of("gyroADC[2]"), Some((0, 57.0)));
-        assert_eq!(of("sensor_combined.accelerometer_m_s2[0]"), Some((1, 1.0)));
-        assert_eq!(of("AccZ"), Some((2, 1.0)));
-        assert_eq!(of("zacc"), Some((2, 102.0)));
-        assert_eq!(of("gyro_x_dps"), Some((0, 57.0)));
-        assert_eq!(of("gyro_x [deg/s]"), Some((0, 57.0)));
-        assert_eq!(of("SCALED_IMU.xgyro"), Some((0, 1000.0)));
-        assert_eq!(of("HIGHRES_IMU.xgyro"), Some((0, 1.0)));
-        assert_eq!(of("HIL_SENSOR.zacc"), Some((2, 1.0)));
-        assert_eq!(Inertial::named("acc_z_g"), Some(Inertial { group: 2, unit: 1.0 / 9.806_65 }));
-        for name in [
-            "accSmooth[2]",
-            "baro",
-            "RAW_IMU.xgyro",
-            "GPS_RAW_INT.h_acc",
-            "GPS.HAcc",
-            "vehicle_gps_position.horizontal_accuracy",
-            "AHRS.accel_weight",
-            "accelerometer_m_s2",
-        ] {
-            assert_eq!(of(name), None, "{name}");
-        }
-    }
+    use crate::unit::Inertial;
 
     #[test]
     fn parameters_are_those_of_the_bank_in_the_unit_of_the_log() {
         let sod = Scheme::named("sod").unwrap();
         let of = |name| {
-            let asked = parameters(sod, Inertial::named(name).unwrap()).unwrap();
+            let asked = parameters(sod, &Inertial::new(name, None, 1.0).unwrap()).unwrap();
             (asked.number("threshold").unwrap(), asked.get("spikes").cloned())
         };
         let (rad, spikes) = of("gyro_x");

@@ -6,7 +6,7 @@ use crate::output::{Output, OutputKind, UNFINISHED_NAME};
 use crate::{Error, Place, Result};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::fs::{self, OpenOptions};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -34,8 +34,11 @@ pub enum Split {
 /// A row of the manifest: one log, and the outcome of encoding it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Full path of the log.
+    /// Full path of the log. Bytes that are not UTF-8 are replaced; [`log_bytes`](Self::log_bytes) has them.
     pub log: String,
+    /// All bytes of the path in hexadecimal digits, if they are not UTF-8.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub log_bytes: Option<String>,
     /// Kind of the log, one of [`NAMES`](super::NAMES); empty if the log cannot be opened.
     pub kind: String,
     /// Length of the log, in bytes.
@@ -88,11 +91,34 @@ pub struct Row {
 
 impl Row {
     pub(super) fn new(log: &Path, settings: &Settings) -> Self {
+        let bytes = log.as_os_str().as_encoded_bytes();
         Self {
             log: log.display().to_string(),
+            log_bytes: log.to_str().is_none().then(|| hex(bytes)),
             settings: settings.sha256.clone(),
             ..Self::default()
         }
+    }
+
+    /// Returns the bytes of the log's path.
+    pub(super) fn key(&self) -> Vec<u8> {
+        let of_bytes = self.log_bytes.as_deref().and_then(unhex);
+        of_bytes.unwrap_or_else(|| self.log.as_bytes().to_vec())
+    }
+
+    /// Returns the path of the log.
+    fn path(&self) -> PathBuf {
+        #[cfg(unix)]
+        return <std::ffi::OsString as std::os::unix::ffi::OsStringExt>::from_vec(self.key())
+            .into();
+        #[cfg(not(unix))]
+        return PathBuf::from(&self.log);
+    }
+
+    /// Returns whether the log is no longer there.
+    fn is_gone(&self) -> bool {
+        let data = fs::symlink_metadata(self.path());
+        data.is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
     }
 
     /// Marks the log as refused. `why` is the reason, as a text for the user, and `kind` is the kind of reason.
@@ -110,7 +136,7 @@ impl Row {
             let open = |error| Error::open(file.display().to_string(), error);
             io::copy(&mut fs::File::open(&file).map_err(open)?, &mut hash).map_err(open)?;
         }
-        self.sha256 = hex(hash.0);
+        self.sha256 = hex(&hash.0.finalize());
         Ok(())
     }
 
@@ -132,7 +158,7 @@ impl Row {
         let plain =
             |own: char| if own.is_alphanumeric() || "-_.".contains(own) { own } else { '_' };
         let stem: String = stem.chars().take(LONGEST).map(plain).collect();
-        let mark = &hex(Sha256::new_with_prefix(&self.log))[..12];
+        let mark = &hashed(self.key())[..12];
         let part = |directory| format!("{directory}/{stem}-{mark}.parquet");
         (part(EVENTS), part(VALUES))
     }
@@ -148,9 +174,12 @@ impl Row {
 
     /// Returns whether the log was refused for a reason that may be gone in a later run, such as a missing disk.
     fn may_pass(&self) -> bool {
-        self.refused_kind.as_deref().is_some_and(|kind| ["Open", "Io"].contains(&kind))
+        self.refused_kind.as_deref().is_some_and(|kind| ["Open", "Io", CHANGED].contains(&kind))
     }
 }
+
+/// Name of the reason that a log was refused because it changed while it was read.
+pub(super) const CHANGED: &str = "Changed";
 
 /// The length and the modification time of a log. If both are the same as before, the log is taken to be unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -210,7 +239,7 @@ pub(super) struct Settings {
 
 impl Settings {
     pub(super) fn new(json: serde_json::Value) -> Self {
-        let sha256 = hex(Sha256::new_with_prefix(json.to_string()));
+        let sha256 = hashed(json.to_string());
         Self { json, sha256 }
     }
 }
@@ -220,7 +249,8 @@ pub(super) struct Manifest {
     directory: PathBuf,
     /// The open file of the manifest, locked for this run.
     file: fs::File,
-    rows: BTreeMap<String, Row>,
+    /// The rows, by the bytes of the logs' paths.
+    rows: BTreeMap<Vec<u8>, Row>,
 }
 
 impl Manifest {
@@ -261,7 +291,7 @@ impl Manifest {
     /// the log. A row is invalid if the log has changed, or if the log was refused for a reason that may be gone.
     pub(super) fn has(&self, log: &Path, file: &File) -> bool {
         let File { bytes, modified_us } = *file;
-        self.rows.get(&log.display().to_string()).is_some_and(|row| {
+        self.rows.get(log.as_os_str().as_encoded_bytes()).is_some_and(|row| {
             (row.bytes, row.modified_us) == (bytes, modified_us) && !row.may_pass()
         })
     }
@@ -274,7 +304,7 @@ impl Manifest {
         let line = serde_json::to_string(&row)? + "\n";
         let written = self.file.write_all(line.as_bytes());
         written.map_err(|error| OutputKind::Unwritten { error }.at(self.path().as_path()))?;
-        self.rows.insert(row.log.clone(), row);
+        self.rows.insert(row.key(), row);
         Ok(())
     }
 
@@ -282,8 +312,9 @@ impl Manifest {
         self.directory.join(MANIFEST)
     }
 
-    /// Splits the flights into training and testing, and rewrites the manifest: a row for each log, sorted by path. The
-    /// same logs and settings give the same bytes, whatever the order of encoding.
+    /// Splits the flights into training and testing, and rewrites the manifest: a row for each log that is still there,
+    /// sorted by path. The same logs and settings give the same bytes, whatever the order of encoding. Returns the rows,
+    /// and the number of logs that are gone.
     ///
     /// # Errors
     /// Returns an error if a file cannot be written.
@@ -292,9 +323,12 @@ impl Manifest {
         settings: &Settings,
         test: f64,
         flights: Flights,
-    ) -> Result<Vec<Row>> {
+    ) -> Result<(Vec<Row>, usize)> {
         let path = self.path();
         let mut rows: Vec<Row> = self.rows.into_values().collect();
+        let before = rows.len();
+        rows.retain(|row| !row.is_gone());
+        let gone = before - rows.len();
         split(&mut rows, test, flights);
         let mut lines = String::new();
         for row in &rows {
@@ -310,45 +344,35 @@ impl Manifest {
         write(&path, &lines)?;
         // A worker that was killed leaves its own, although the run went on.
         delete_unfinished(&self.directory).map_err(|error| unwritten(error.into()))?;
-        Ok(rows)
+        Ok((rows, gone))
     }
 }
 
-/// Assigns each flight to training or testing. A flight is one log, or all logs of one directory. The hash of a flight
-/// is computed from the smallest SHA-256 of its logs. The flights with the smallest hashes are for testing. `test` is
-/// their share of all flights, 0 to 1. Flights with the same hash count as one flight.
+/// Assigns each flight to training or testing. A flight is one log, or all logs of one directory. It is for testing if
+/// its hash, as a number from 0 to 1, is below `test`: the hash is that of the log's content or of the directory's path.
+/// Other logs thus never change the side of a flight, and copies of a log are on one side.
 fn split(rows: &mut [Row], test: f64, flights: Flights) {
-    let flight = |row: &Row| match flights {
-        Flights::Logs => row.sha256.clone(),
-        Flights::Directories => {
-            Path::new(&row.log).parent().unwrap_or(Path::new("")).display().to_string()
-        }
-    };
-    // A flight goes by its first hash, and not by a name that another machine may not know.
-    let mut first: HashMap<String, String> = HashMap::new();
-    for row in rows.iter_mut() {
-        row.split = None;
+    for row in rows {
+        let flight = match flights {
+            Flights::Logs => row.sha256.clone(),
+            Flights::Directories => {
+                let path = row.path();
+                let directory = path.parent().unwrap_or(Path::new(""));
+                hex(directory.as_os_str().as_encoded_bytes())
+            }
+        };
+        let side = if part(&flight) < test { Split::Test } else { Split::Train };
+        row.split = row.events.is_some().then_some(side);
     }
-    for row in rows.iter().filter(|row| row.events.is_some()) {
-        let own = first.entry(flight(row)).or_insert_with(|| row.sha256.clone());
-        if row.sha256 < *own {
-            own.clone_from(&row.sha256);
-        }
-    }
+}
+
+/// Returns a number from 0 to 1, below 1, that is drawn by a hash of a flight.
+fn part(flight: &str) -> f64 {
     // Hashed once more, or another program that splits by hash would choose the same logs.
-    let mixed = |sha256: &String| hex(Sha256::new_with_prefix(format!("split {sha256}")));
-    let mut order: Vec<String> = first.values().map(mixed).collect();
-    order.sort();
-    order.dedup();
-    let most = order.len().saturating_sub(1).max(usize::from(test == 1.0) * order.len());
-    let least = usize::from(test > 0.0).min(most);
-    let count = ((order.len() as f64 * test).round() as usize).clamp(least, most);
-    for row in rows.iter_mut().filter(|row| row.events.is_some()) {
-        let is_test = first
-            .get(&flight(row))
-            .is_some_and(|own| order[..count].binary_search(&mixed(own)).is_ok());
-        row.split = Some(if is_test { Split::Test } else { Split::Train });
-    }
+    let hash = Sha256::new_with_prefix(format!("split {flight}")).finalize();
+    // 53 bits are those that a double holds exactly.
+    let bits = hash.iter().take(8).fold(0_u64, |bits, byte| bits << 8 | u64::from(*byte)) >> 11;
+    bits as f64 / (1_u64 << 53) as f64
 }
 
 /// Reads the manifest of a data set: the latest row of each log, sorted by path. Rows whose files are missing or
@@ -370,7 +394,7 @@ fn whole(text: &str) -> &str {
 
 /// Parses the lines of the manifest in `directory`. Returns the latest row of each log, by the log's path, of the rows
 /// whose files are complete.
-fn parse(text: &str, directory: &Path) -> Result<BTreeMap<String, Row>> {
+fn parse(text: &str, directory: &Path) -> Result<BTreeMap<Vec<u8>, Row>> {
     let path = directory.join(MANIFEST);
     let mut rows = BTreeMap::new();
     for (line, own) in (1..).zip(text.lines()) {
@@ -378,7 +402,7 @@ fn parse(text: &str, directory: &Path) -> Result<BTreeMap<String, Row>> {
             DatasetKind::NoRow { error }.at(Place::line(path.display().to_string(), line))
         })?;
         if row.is_there(directory) {
-            rows.insert(row.log.clone(), row);
+            rows.insert(row.key(), row);
         }
     }
     Ok(rows)
@@ -440,11 +464,77 @@ impl Write for Hash {
     }
 }
 
-fn hex(hash: Sha256) -> String {
+fn hashed(bytes: impl AsRef<[u8]>) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
+fn hex(bytes: &[u8]) -> String {
     use std::fmt::Write;
     let mut text = String::new();
-    for byte in hash.finalize() {
+    for byte in bytes {
         let _ = write!(text, "{byte:02x}");
     }
     text
+}
+
+/// Returns the bytes of a text of hexadecimal digits; `None` if it is none.
+fn unhex(text: &str) -> Option<Vec<u8>> {
+    let digits = text.as_bytes().chunks(2).map(|own| str::from_utf8(own).ok());
+    digits.map(|own| u8::from_str_radix(own?, 16).ok()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Flights, Row, Settings, Split, hex, split};
+    use std::path::Path;
+
+    fn row(log: &str) -> Row {
+        let sha256 = super::hashed(log);
+        Row { log: log.to_owned(), sha256, events: Some(String::new()), ..Row::default() }
+    }
+
+    /// Of a thousand logs about a fifth are for testing. Logs that are added leave the others on their side.
+    #[test]
+    fn an_added_log_moves_no_other() {
+        let sides = |count: usize, flights| {
+            let mut rows: Vec<Row> = (0..count).map(|log| row(&format!("/{log}/a.csv"))).collect();
+            split(&mut rows, 0.2, flights);
+            rows.into_iter().map(|own| own.split.unwrap()).collect::<Vec<_>>()
+        };
+        for flights in [Flights::Logs, Flights::Directories] {
+            let all = sides(1000, flights);
+            for count in 1..100 {
+                assert_eq!(sides(count, flights), all[..count]);
+            }
+            let test = all.iter().filter(|own| **own == Split::Test).count();
+            assert!((150..250).contains(&test), "{test}");
+        }
+    }
+
+    #[test]
+    fn all_or_none_can_be_for_testing() {
+        for (test, side) in [(0.0, Split::Train), (1.0, Split::Test)] {
+            let mut rows = [row("/a.csv"), row("/b.csv"), row("/c.csv")];
+            split(&mut rows, test, Flights::Logs);
+            assert!(rows.iter().all(|own| own.split == Some(side)));
+        }
+    }
+
+    /// Two names that look the same, as their bytes are not UTF-8, have rows and parts of their own.
+    #[cfg(unix)]
+    #[test]
+    fn bytes_of_a_path_are_its_key() {
+        use std::ffi::OsStr;
+        use std::os::unix::ffi::OsStrExt;
+        let settings = Settings::new(serde_json::Value::Null);
+        let rows = [&b"/logs/a\xff.csv"[..], &b"/logs/a\xfe.csv"[..]].map(|bytes| {
+            let own = Row::new(Path::new(OsStr::from_bytes(bytes)), &settings);
+            assert_eq!((own.key(), own.log_bytes.clone()), (bytes.to_vec(), Some(hex(bytes))));
+            assert_eq!(own.path(), Path::new(OsStr::from_bytes(bytes)));
+            own
+        });
+        assert_eq!(rows[0].log, rows[1].log);
+        assert_ne!(rows[0].parts(), rows[1].parts());
+        assert_eq!(row("/logs/a.csv").key(), b"/logs/a.csv");
+    }
 }

@@ -23,7 +23,7 @@ use crate::watch::Progress;
 use crate::{Error, ErrorKind, Result};
 use catalogue::run::Given;
 use flight_logs::Kind;
-use manifest::{File, Manifest, Settings};
+use manifest::{CHANGED, File, Manifest, Settings};
 use parts::Parts;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -70,7 +70,7 @@ pub enum Code {
 pub enum Flights {
     /// Each log is a flight of its own. Copies of one log are one flight.
     Logs,
-    /// All logs in a directory are one flight.
+    /// All logs in a directory are one flight. Its side goes by the directory's path, so that logs may be added.
     Directories,
 }
 
@@ -115,11 +115,13 @@ impl FromStr for ChannelsOf {
 /// The result of a run: the numbers of logs, samples and spikes in the data set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Outcome {
-    /// Number of requested logs.
+    /// Number of logs in the data set: those that were requested, and those of earlier runs.
     pub logs: usize,
-    /// Number of requested logs that an earlier run had already encoded or refused.
+    /// Number of these logs that an earlier run had already encoded or refused.
     pub done_before: usize,
-    /// Number of requested logs that cannot be read or encoded. The manifest has the reasons.
+    /// Number of logs of earlier runs that are no longer there. They have no row any more.
+    pub gone: usize,
+    /// Number of logs that cannot be read or encoded. The manifest has the reasons.
     pub refused: usize,
     /// Number of files in the requested directories that are neither logs nor tables.
     pub passed_over: usize,
@@ -133,8 +135,7 @@ pub struct Outcome {
     pub test: usize,
 }
 
-/// Makes a data set, or completes one that an earlier run began with the same settings. Also returns the manifest's rows
-/// of the requested logs.
+/// Makes a data set, or completes one that an earlier run began with the same settings. Also returns the manifest's rows.
 ///
 /// # Errors
 /// Returns an error if there are no logs, if the directory holds a data set with other settings, or if a file cannot be
@@ -220,22 +221,23 @@ impl Run {
     }
 
     /// Splits the data set into training and test data, and sorts the rows of the manifest by the logs' paths. All logs
-    /// of a flight (see [`Flights`]) are on the same side of the split. Returns the numbers and the rows of the requested
-    /// logs.
+    /// of a flight (see [`Flights`]) are on the same side of the split. A log that is no longer there loses its row; its
+    /// files stay. Returns the numbers and the rows.
     ///
     /// # Errors
     /// Returns an error if a file cannot be written.
     pub fn finish(self) -> Result<(Outcome, Vec<Row>)> {
+        let Request { test, flights, .. } = self.request;
+        let (rows, gone) = self.manifest.finish(&self.request.settings(), test, flights)?;
+        let left: HashSet<&[u8]> =
+            self.left.iter().map(|log| log.as_os_str().as_encoded_bytes()).collect();
         let mut outcome = Outcome {
-            logs: self.logs.len(),
-            done_before: self.done_before(),
+            logs: rows.len(),
+            done_before: rows.iter().filter(|row| !left.contains(&*row.key())).count(),
+            gone,
             passed_over: self.passed_over,
             ..Outcome::default()
         };
-        let Request { test, flights, .. } = self.request;
-        let mut rows = self.manifest.finish(&self.request.settings(), test, flights)?;
-        let logs: HashSet<String> = self.logs.iter().map(|log| log.display().to_string()).collect();
-        rows.retain(|row| logs.contains(&row.log));
         for row in &rows {
             outcome.refused += usize::from(row.refused.is_some());
             outcome.samples += row.samples;
@@ -400,19 +402,29 @@ impl Request {
     /// Returns an error if the file of spikes or of samples cannot be written.
     pub fn encode(&self, log: &Path) -> Result<Row> {
         let mut row = Row::new(log, &self.settings());
-        match File::of(log) {
-            Ok(file) => file.describe(&mut row),
+        let file = match File::of(log) {
+            Ok(file) => file,
             Err(why) => {
                 row.refuse("Open", why.to_string());
                 return Ok(row);
             }
-        }
-        match self.encoded(log, &mut row) {
+        };
+        file.describe(&mut row);
+        let mut encoded = row.clone();
+        match self.encoded(log, &mut encoded) {
             Err(error) if matches!(*error.kind, ErrorKind::Output(_)) => return Err(error),
-            Err(error) => row.refuse(error.kind.name(), error.to_string()),
+            Err(error) => encoded.refuse(error.kind.name(), error.to_string()),
+            // The hash, the spikes and the samples are of the same bytes only if the log stayed as it was.
+            Ok(()) if File::of(log).ok() != Some(file) => {
+                row.refuse(
+                    CHANGED,
+                    "it changed while it was read; the next run reads it again".to_owned(),
+                );
+                return Ok(row);
+            }
             Ok(()) => {}
         }
-        Ok(row)
+        Ok(encoded)
     }
 
     /// Encodes a log to its files of spikes and samples, and adds the results to the log's row.

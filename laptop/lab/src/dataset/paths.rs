@@ -2,7 +2,7 @@
 
 use super::DatasetKind;
 use super::manifest::MANIFEST;
-use crate::{Error, Result};
+use crate::Result;
 use flight_logs::Kind;
 use std::collections::BTreeSet;
 use std::fs;
@@ -16,35 +16,37 @@ const PACKED: [&str; 5] = ["gz", "zst", "zstd", "bz2", "xz"];
 
 /// Finds the logs, including tables, in the given files, directories and patterns. A file that is given by name or that
 /// matches a pattern always counts as a log. Files in directories that are neither logs nor tables are passed over.
-/// Returns the logs' full paths, sorted and without repetitions, and the number of files passed over.
+/// A directory that cannot be read, or a link that leads nowhere, counts as a log, which cannot be opened. Returns the
+/// logs' full paths, sorted and without repetitions, and the number of files passed over.
 ///
 /// # Errors
-/// Returns an error if a file is missing, if a pattern is invalid, or if a directory cannot be read.
+/// Returns an error if a file is missing, or if a pattern is invalid.
 pub(super) fn find(given: &[PathBuf], output: &Path) -> Result<(Vec<PathBuf>, usize)> {
     // It may not be there yet.
     let output = output.canonicalize().unwrap_or_default();
     let mut found = Found { logs: BTreeSet::new(), passed_over: 0, output };
     for path in given {
         if path.exists() {
-            found.take(path)?;
+            found.take(path);
             continue;
         }
         for path in matches(path)? {
-            found.take(&path)?;
+            found.take(&path);
         }
     }
     Ok((found.logs.into_iter().collect(), found.passed_over))
 }
 
-/// Returns the files and directories that match a pattern, sorted by name.
+/// Returns the files and directories that match a pattern, sorted by name, and the directories that cannot be read.
 ///
 /// # Errors
-/// Returns an error if the pattern is invalid, if nothing matches it, or if a directory cannot be read.
+/// Returns an error if the pattern is invalid, or if nothing matches it.
 pub(super) fn matches(pattern: &Path) -> Result<Vec<PathBuf>> {
     let name = pattern.display().to_string();
     let matches = glob::glob(&name).map_err(|error| DatasetKind::Pattern { error }.at(&name))?;
-    let matches = matches.map(|path| path.map_err(|error| Error::open(&name, error.into())));
-    let matches = matches.collect::<Result<Vec<_>>>()?;
+    // A directory that cannot be read stands among the matches: whoever opens it gets the reason.
+    let matches = matches.map(|path| path.unwrap_or_else(|error| error.path().to_owned()));
+    let matches: Vec<PathBuf> = matches.collect();
     if matches.is_empty() {
         return Err(DatasetKind::NoneThere.at(name));
     }
@@ -59,39 +61,45 @@ struct Found {
 
 impl Found {
     /// Adds a log, or all logs in a directory.
-    fn take(&mut self, path: &Path) -> Result<()> {
+    fn take(&mut self, path: &Path) {
         // A directory that is a log, as ROS 2 writes it.
         let is_log = !path.is_dir() || Kind::of(path).is_ok();
-        let path = full(path)?;
+        let path = full(path);
         if is_log {
             self.logs.insert(path);
-            return Ok(());
+            return;
         }
         // Not the parts of a data set.
         if path == self.output || path.join(MANIFEST).exists() {
-            return Ok(());
+            return;
         }
-        let unread = |error| Error::open(path.display().to_string(), error);
-        for entry in fs::read_dir(&path).map_err(unread)? {
-            let entry = entry.map_err(unread)?;
-            let (own, kind) = (entry.path(), entry.file_type().map_err(unread)?);
+        let Ok(entries) = fs::read_dir(&path) else {
+            self.logs.insert(path);
+            return;
+        };
+        for entry in entries {
+            let Ok(entry) = entry else {
+                self.logs.insert(path);
+                return;
+            };
+            let own = entry.path();
             let is_hidden = entry.file_name().as_encoded_bytes().starts_with(b".");
             // A link to a directory may lead in a circle.
-            if is_hidden || kind.is_symlink() && own.is_dir() {
+            if is_hidden || own.is_symlink() && own.is_dir() {
                 continue;
             }
             if own.is_dir() || is_log_or_table(&own) {
-                self.take(&own)?;
+                self.take(&own);
             } else {
                 self.passed_over += 1;
             }
         }
-        Ok(())
     }
 }
 
-fn full(path: &Path) -> Result<PathBuf> {
-    path.canonicalize().map_err(|error| Error::open(path.display().to_string(), error))
+/// Returns the full path behind all links or, if a link leads nowhere, the full path of the link.
+fn full(path: &Path) -> PathBuf {
+    path.canonicalize().or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
 }
 
 fn is_log_or_table(path: &Path) -> bool {

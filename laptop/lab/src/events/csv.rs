@@ -1,14 +1,16 @@
-//! Tables of events as CSV, with the columns `tick,address,polarity`. Comment lines hold all other items, such as
-//! keyframes.
+//! Tables of events as CSV, with the columns `tick,address,polarity`, or `tick,x,y,polarity` for those of a camera. Comment
+//! lines hold all other items, such as keyframes.
 
 use super::{EventReader, EventWriter, EventsKind, Item, Known, Tally};
 use crate::error::At;
 use crate::{Place, Result};
 use catalogue::run::SampleType;
 use spikewire::{Event, Keyframe, Polarity, SampleKind, Tick};
+use spikewire_cameras::frame::PixelEvent;
 use std::io::Write;
 
 pub(super) const HEADER: &str = "tick,address,polarity";
+pub(super) const PIXELS: &str = "tick,x,y,polarity";
 const VALUES: &str = "tick,address,value,known";
 
 /// A reader of event tables in CSV. Also reads a file of spikes, if the file gives times.
@@ -31,8 +33,15 @@ pub(super) struct Reader {
 #[derive(Clone, Copy)]
 struct Columns {
     tick: usize,
-    address: usize,
+    origin: Origin,
     polarity: usize,
+}
+
+/// The columns that say where an event comes from.
+#[derive(Clone, Copy)]
+enum Origin {
+    Address(usize),
+    Pixel { x: usize, y: usize },
 }
 
 impl Reader {
@@ -83,7 +92,7 @@ impl Reader {
             })
         };
         let item = item.at(|| Place::line(&self.file, self.number))?;
-        self.events += u64::from(matches!(item, Some(Item::Event(_))));
+        self.events += u64::from(matches!(item, Some(Item::Event(_) | Item::Pixel(_))));
         items.extend(item);
         Ok(())
     }
@@ -129,25 +138,44 @@ impl EventReader for Reader {
 fn header(text: &str) -> Result<Columns> {
     let names: Vec<&str> = text.split(',').map(str::trim).collect();
     let find = |wanted: &[&str]| names.iter().position(|name| wanted.contains(name));
-    match (find(&["tick", "time_us"]), find(&["address"]), find(&["polarity"])) {
-        (Some(tick), Some(address), Some(polarity)) => Ok(Columns { tick, address, polarity }),
+    let origin = match (find(&["address"]), find(&["x"]), find(&["y"])) {
+        (Some(address), ..) => Some(Origin::Address(address)),
+        (None, Some(x), Some(y)) => Some(Origin::Pixel { x, y }),
+        _ => None,
+    };
+    match (find(&["tick", "time_us"]), origin, find(&["polarity"])) {
+        (Some(tick), Some(origin), Some(polarity)) => Ok(Columns { tick, origin, polarity }),
         _ => Err(EventsKind::NoHeader { text: text.to_owned() }.into()),
     }
 }
 
 fn event_item(text: &str, columns: Columns, long_ticks: &mut u64) -> Result<Item> {
     let field = |column: usize| text.split(',').nth(column).map_or("", str::trim);
-    let (tick, address) = (field(columns.tick), field(columns.address));
+    let tick = field(columns.tick);
     let micros: u64 = tick.parse().map_err(|_| EventsKind::Tick { text: tick.to_owned() })?;
     let tick = Tick::from_micros(micros);
     *long_ticks += u64::from(u64::from(tick.micros()) != micros);
-    let address = address.parse().map_err(|_| EventsKind::Address { text: address.to_owned() })?;
     let polarity = match field(columns.polarity) {
         "1" => Polarity::Up,
         "-1" => Polarity::Down,
         other => return Err(EventsKind::Polarity { text: other.to_owned() }.into()),
     };
-    Ok(Item::Event(Event { tick, address, polarity }))
+    match columns.origin {
+        Origin::Address(column) => {
+            let text = field(column);
+            let no_address = |_| EventsKind::Address { text: text.to_owned() };
+            let address = text.parse().map_err(no_address)?;
+            Ok(Item::Event(Event { tick, address, polarity }))
+        }
+        Origin::Pixel { x, y } => {
+            let (x, y) = (pixel("x", field(x))?, pixel("y", field(y))?);
+            Ok(Item::Pixel(PixelEvent { tick, x, y, polarity }))
+        }
+    }
+}
+
+fn pixel(column: &'static str, text: &str) -> Result<u16> {
+    text.parse().map_err(|_| EventsKind::Pixel { column, text: text.to_owned() }.into())
 }
 
 /// Parses a comment that holds an item: a keyframe, a heartbeat, a loss or a restart. Returns `None` for any other
@@ -203,18 +231,26 @@ fn name_of(kind: SampleKind) -> String {
 /// A writer of a table of events. If `values` holds a sample type, the table holds decoded values of that type instead.
 pub(super) struct Writer {
     values: Option<SampleType>,
-    has_begun: bool,
+    /// Whether events have columns and rows; `None` before the first item.
+    has_pixels: Option<bool>,
     line: Vec<u8>,
 }
 
 impl Writer {
     pub(super) fn new(values: Option<SampleType>) -> Self {
-        Self { values, has_begun: false, line: Vec::new() }
+        Self { values, has_pixels: None, line: Vec::new() }
     }
 
-    fn begin(&mut self, output: &mut dyn Write) -> Result<()> {
-        if !std::mem::replace(&mut self.has_begun, true) {
-            writeln!(output, "{}", if self.values.is_some() { VALUES } else { HEADER })?;
+    /// Writes the header at the first call. `has_pixels` is what the first item asks for.
+    fn begin(&mut self, has_pixels: bool, output: &mut dyn Write) -> Result<()> {
+        if self.has_pixels.is_none() {
+            self.has_pixels = Some(has_pixels);
+            let header = match (self.values, has_pixels) {
+                (Some(_), _) => VALUES,
+                (None, true) => PIXELS,
+                (None, false) => HEADER,
+            };
+            writeln!(output, "{header}")?;
         }
         Ok(())
     }
@@ -226,6 +262,10 @@ impl Writer {
         self.line.push(b',');
         self.line.extend(digits.format(address).as_bytes());
         self.line.push(b',');
+    }
+
+    fn polarity(&mut self, polarity: Polarity) {
+        self.line.extend(if polarity == Polarity::Up { &b"1\n"[..] } else { b"-1\n" });
     }
 
     /// Appends a value to the line, as the shortest text that can be parsed to exactly the same value. The text of an
@@ -242,12 +282,24 @@ impl Writer {
 
 impl EventWriter for Writer {
     fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()> {
-        self.begin(output)?;
+        self.begin(matches!(item, Item::Pixel(_)), output)?;
         match *item {
+            Item::Event(_) if self.has_pixels == Some(true) => {
+                return Err(EventsKind::NoAddresses.into());
+            }
+            Item::Pixel(_) if self.has_pixels == Some(false) => {
+                return Err(EventsKind::NoPixels.into());
+            }
             Item::Event(Event { tick, address, polarity }) => {
                 self.start_line(tick, address);
-                let polarity: &[u8] = if polarity == Polarity::Up { b"1\n" } else { b"-1\n" };
-                self.line.extend(polarity);
+                self.polarity(polarity);
+                output.write_all(&self.line)?;
+            }
+            Item::Pixel(PixelEvent { tick, x, y, polarity }) => {
+                self.start_line(tick, x);
+                self.line.extend(itoa::Buffer::new().format(y).as_bytes());
+                self.line.push(b',');
+                self.polarity(polarity);
                 output.write_all(&self.line)?;
             }
             Item::Value { tick, address, value, known } => {
@@ -276,6 +328,6 @@ impl EventWriter for Writer {
     }
 
     fn finish(&mut self, output: &mut dyn Write) -> Result<()> {
-        self.begin(output)
+        self.begin(false, output)
     }
 }

@@ -165,7 +165,7 @@ impl EventWriter for Writer {
     fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()> {
         match *item {
             Item::Event(event) => self.event(event, output)?,
-            other => self.omitted.leave_out(other),
+            other => self.omitted.leave_out(other, self.drops)?,
         }
         Ok(())
     }

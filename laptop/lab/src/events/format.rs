@@ -1,13 +1,14 @@
 //! Event formats by name. Parses a name such as `evt2` or `edvs:e2,up=0`, and makes a reader or writer of the format.
 
-use super::bytes::{self, Hooks};
+use super::bytes;
 use super::eieio::{self, Board};
-use super::{EventReader, EventWriter, EventsKind, LinkReader, csv, link};
+use super::prophesee::{self, Version};
+use super::{EventReader, EventWriter, EventsKind, LinkReader, Size, csv, dvs, link, pixels};
 use crate::{Error, Result};
 use catalogue::run::SampleType;
 use spikewire::Tick;
 use spikewire::link::Coding;
-use spikewire_cameras::format::{Edvs, EdvsTime, EventStream, Evt2};
+use spikewire_cameras::format::{Edvs, EdvsTime};
 use std::fmt;
 use std::num::NonZeroU32;
 use std::str::FromStr;
@@ -21,9 +22,24 @@ pub enum Format {
     /// The format of eDVS event cameras, with the encoding of the events' times.
     Edvs(Edvs, EdvsTime),
     /// Event Stream, in a file `.es`.
-    EventStream,
+    EventStream {
+        /// The size of the camera's picture, for a writer of events that have columns and rows.
+        size: Option<Size>,
+    },
     /// EVT2, in a file `.raw`.
-    Evt2,
+    Evt2 {
+        /// As for [`EventStream`](Self::EventStream).
+        size: Option<Size>,
+        /// Whether words without a header have columns and rows, and no addresses.
+        has_pixels: bool,
+    },
+    /// EVT 2.1, in a file `.raw`; read only.
+    Evt21,
+    /// EVT3, in a file `.raw`.
+    Evt3 {
+        /// As for [`EventStream`](Self::EventStream).
+        size: Option<Size>,
+    },
     /// EIEIO, the datagrams of `SpiNNaker` boards.
     Eieio(Board),
     /// A table of events in CSV.
@@ -39,25 +55,15 @@ impl Format {
                 let is_timed = time != EdvsTime::None;
                 let set_arrival: fn(&mut _, Tick) =
                     spikewire_cameras::format::EdvsDecoder::set_tick;
-                let hooks =
-                    Hooks { check: |_| Ok(()), set_arrival: (!is_timed).then_some(set_arrival) };
-                Box::new(bytes::Reader::new(edvs.decoder(), hooks))
+                let set_arrival = (!is_timed).then_some(set_arrival);
+                Box::new(bytes::Reader::new(edvs.decoder(), set_arrival))
             }
-            Self::EventStream => {
-                let check: fn(&spikewire_cameras::format::EventStreamDecoder) -> Result<()> =
-                    |decoder| {
-                        if decoder.is_foreign() {
-                            return Err(EventsKind::NotAnEventStream.into());
-                        }
-                        Ok(())
-                    };
-                let hooks = Hooks { check, set_arrival: None };
-                Box::new(bytes::Reader::new(EventStream::decoder(), hooks))
+            Self::EventStream { .. } => Box::<dvs::Reader>::default(),
+            Self::Evt2 { has_pixels, .. } => {
+                Box::new(prophesee::Reader::new(Version::Evt2, has_pixels))
             }
-            Self::Evt2 => {
-                let hooks = Hooks { check: |_| Ok(()), set_arrival: None };
-                Box::new(bytes::Reader::new(Evt2::file_decoder(), hooks))
-            }
+            Self::Evt21 => Box::new(prophesee::Reader::new(Version::Evt21, true)),
+            Self::Evt3 { .. } => Box::new(prophesee::Reader::new(Version::Evt3, false)),
             Self::Eieio(board) => Box::new(eieio::Reader::new(board)),
             Self::Csv => Box::new(csv::Reader::new(file)),
         }
@@ -65,27 +71,26 @@ impl Format {
 
     /// Makes a writer of the format. If `drops` is true, the writer drops and counts events that the format cannot
     /// express. If `drops` is false, such an event is an error.
-    pub fn writer(self, drops: bool) -> Box<dyn EventWriter> {
-        match self {
+    ///
+    /// # Errors
+    /// Returns an error if the format is read only.
+    pub fn writer(self, drops: bool) -> Result<Box<dyn EventWriter>> {
+        Ok(match self {
             Self::Link(coding) => Box::new(link::Writer::new(coding)),
             Self::Edvs(edvs, _) => {
-                Box::new(bytes::Writer::new(edvs.encoder(), edvs.decoder(), &[], drops))
+                Box::new(bytes::Writer::new(edvs.encoder(), edvs.decoder(), vec![], drops))
             }
-            Self::EventStream => Box::new(bytes::Writer::new(
-                EventStream::encoder(),
-                EventStream::decoder(),
-                &EventStream::HEADER,
-                drops,
-            )),
-            Self::Evt2 => Box::new(bytes::Writer::new(
-                Evt2::encoder(),
-                Evt2::file_decoder(),
-                Evt2::HEADER,
-                drops,
-            )),
+            Self::EventStream { size } => {
+                Box::new(pixels::Writer::new(pixels::Format::EventStream, size, drops))
+            }
+            Self::Evt2 { size, .. } => {
+                Box::new(pixels::Writer::new(pixels::Format::Evt2, size, drops))
+            }
+            Self::Evt21 => return Err(EventsKind::ReadOnly { format: self.to_string() }.into()),
+            Self::Evt3 { size } => Box::new(pixels::Writer::new(pixels::Format::Evt3, size, drops)),
             Self::Eieio(board) => Box::new(eieio::Writer::new(board, drops)),
             Self::Csv => Box::new(csv::Writer::new(None)),
-        }
+        })
     }
 }
 
@@ -104,8 +109,10 @@ impl fmt::Display for Format {
             Self::Edvs(_, EdvsTime::Bits16) => "edvs:e2",
             Self::Edvs(_, EdvsTime::Bits24) => "edvs:e3",
             Self::Edvs(_, EdvsTime::Bits32) => "edvs:e4",
-            Self::EventStream => "es",
-            Self::Evt2 => "evt2",
+            Self::EventStream { .. } => "es",
+            Self::Evt2 { .. } => "evt2",
+            Self::Evt21 => "evt21",
+            Self::Evt3 { .. } => "evt3",
             Self::Eieio(_) => "eieio",
             Self::Csv => "csv",
         })
@@ -113,7 +120,7 @@ impl fmt::Display for Format {
 }
 
 /// Names of the formats, as [`Format`] parses them.
-pub(crate) const NAMES: &str = "link, edvs:e0 to edvs:e4, es, evt2, eieio, csv";
+pub(crate) const NAMES: &str = "link, edvs:e0 to edvs:e4, es, evt2, evt21, evt3, eieio, csv";
 
 impl FromStr for Format {
     type Err = Error;
@@ -137,8 +144,13 @@ impl FromStr for Format {
             "edvs:e2" => edvs(EdvsTime::Bits16, &mut settings)?,
             "edvs:e3" => edvs(EdvsTime::Bits24, &mut settings)?,
             "edvs:e4" => edvs(EdvsTime::Bits32, &mut settings)?,
-            "es" => Self::EventStream,
-            "evt2" => Self::Evt2,
+            "es" => Self::EventStream { size: settings.size()? },
+            "evt2" => {
+                let size = settings.size()?;
+                Self::Evt2 { size, has_pixels: settings.bit("pixels", false)? }
+            }
+            "evt21" => Self::Evt21,
+            "evt3" => Self::Evt3 { size: settings.size()? },
             "eieio" => {
                 let base = settings.number("base", 0)?;
                 let step = NonZeroU32::new(settings.number("step", 1_000)?)
@@ -197,6 +209,16 @@ impl<'a> Settings<'a> {
         match self.number::<u32>(key, otherwise.into())? {
             bit @ 0..=1 => Ok(bit == 1),
             number => Err(EventsKind::NotABit { key: key.to_owned(), number }.into()),
+        }
+    }
+
+    /// Removes the pairs `width` and `height`, and returns them if they are there.
+    fn size(&mut self) -> Result<Option<Size>> {
+        let size = Size { width: self.number("width", 0)?, height: self.number("height", 0)? };
+        match size {
+            Size { width: 0, height: 0 } => Ok(None),
+            Size { width: 0, .. } | Size { height: 0, .. } => Err(EventsKind::HalfASize.into()),
+            size => Ok(Some(size)),
         }
     }
 

@@ -15,13 +15,26 @@ kinds! {
         TakesNoKey { format: String, key: String } => ("{format} takes no {key}="),
         PeriodOrJitter { text: String } => ("{text}: the period must be above 0 µs, the jitter at most 15 bits"),
         Step { text: String } => ("{text}: the step must be above 0 µs"),
+        HalfASize => ("width= and height= go together, and are 1 or more"),
+        ReadOnly { format: String } => ("{format} is read, and not written; evt2 and evt3 are written"),
         TimesOfEdvs => ("edvs: how it sends times must follow, edvs:e0 to edvs:e4"),
         // Bytes of a format other than the expected one.
-        NotAnEventStream => ("not an Event Stream of version 2 and of generic events"),
+        NotAnEventStream => ("not an Event Stream of version 2, of generic events or of a camera's (DVS)"),
+        OtherVersion { version: &'static str, name: String } =>
+            ("the header says EVT {version}, which the format `{name}` reads"),
+        ByteOrder { order: String } =>
+            ("the header says `endianness={order}`, where `little` and `legacy` are read"),
+        FarRows { events: u64 } => (
+            "events without an address, in rows from 32 on: {events}; `evt2,pixels=1` reads columns and rows"
+        ),
         OtherFormat { format: String, what: &'static str, bytes: u64 } =>
             ("no {format} {what} in the {bytes} bytes; are they of another format?"),
         // Events that a format cannot express.
         NoWord { event: u64, error: FormatError } => ("event {event}: {error}; {} goes on", spell("drop")),
+        NoPixels =>
+            ("events of a camera have columns and rows, for which es, evt2, evt3 and csv have a place"),
+        NoSize => ("the header of es has the size of the picture: `es,width=320,height=240`"),
+        NoAddresses => ("addresses among columns and rows"),
         NoDirection { event: u64, address: u16 } => (
             "event {event} at address {address}: a key of 32 bits has no direction; signed=1 gives an address two keys, \
              {} goes on",
@@ -29,13 +42,18 @@ kinds! {
         ),
         // Tables of events.
         Empty => ("empty; a table of events starts with `{}`", super::csv::HEADER),
-        NoHeader { text: String } =>
-            ("`{text}`, where `{}` should stand (or `time_us` for `tick`)", super::csv::HEADER),
+        NoHeader { text: String } => (
+            "`{text}`, where `{}` or `{}` should stand (or `time_us` for `tick`)",
+            super::csv::HEADER,
+            super::csv::PIXELS
+        ),
         LongLine { most: usize } => ("longer than {most} bytes; is it a table?"),
         NotACount { text: String } => ("`{text}` is not a count"),
         Frames { text: String } => ("`{text}` is not a number of frames"),
         Tick { text: String } => ("tick `{text}` is not a number of µs from 0 on"),
         Address { text: String } => ("address `{text}` is not a number from 0 to {}", u16::MAX),
+        Pixel { column: &'static str, text: String } =>
+            ("{column} `{text}` is not a number from 0 to {}", u16::MAX),
         Polarity { text: String } => ("polarity `{text}` is neither 1 nor -1"),
         Heartbeat { text: String } => ("heartbeat `{text}` is not TICK,ADDRESS"),
         Keyframe { text: String } => (

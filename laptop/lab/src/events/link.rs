@@ -1,6 +1,6 @@
 //! Reads and writes frames of `spikewire`'s link: packets of events from a sender.
 
-use super::{EventReader, EventWriter, Item, LinkTally, Tally};
+use super::{EventReader, EventWriter, EventsKind, Item, LinkTally, Tally};
 use crate::Result;
 use spikewire::link::{Coding, Framer, LinkError, MAX_FRAME, Reader, Received, Session, Withheld};
 use spikewire::{Event, Keyframe, Tick};
@@ -239,6 +239,7 @@ impl EventWriter for Writer {
                 }
                 self.owes_mark = true;
             }
+            Item::Pixel(_) => return Err(EventsKind::NoPixels.into()),
             Item::Value { .. } => {}
         }
         Ok(())

@@ -5,11 +5,14 @@
 
 mod bytes;
 mod csv;
+mod dvs;
 mod eieio;
 mod format;
 mod kinds;
 mod link;
 mod omitted;
+mod pixels;
+mod prophesee;
 mod stream;
 mod tally;
 mod whole;
@@ -19,10 +22,11 @@ pub use kinds::EventsKind;
 pub use link::{LinkReader, Values};
 pub use stream::Stream;
 pub use tally::{Held, LinkTally, Tally};
-pub use whole::{Events, read_events, write_events};
+pub use whole::{Events, read_events, write_events, write_pixels};
 
 use crate::Result;
 use spikewire::{Event, Keyframe, Tick};
+pub use spikewire_cameras::frame::PixelEvent;
 use std::io::Write;
 
 /// One item of a stream of events. Items have the order in which they were sent.
@@ -30,6 +34,8 @@ use std::io::Write;
 pub enum Item {
     /// A spike.
     Event(Event),
+    /// An event of a camera's pixel. A stream has either these or spikes.
+    Pixel(PixelEvent),
     /// A value that the sender's encoder held, from which a decoder can resume.
     Keyframe(Keyframe),
     /// A heartbeat, sent for a sample by a sender whose code has no keyframes. The fields are the tick of the sample
@@ -52,6 +58,15 @@ pub enum Item {
     LostEvents,
     /// A restart of the sender.
     Restart,
+}
+
+/// The size of a camera's picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// Number of columns.
+    pub width: u16,
+    /// Number of rows.
+    pub height: u16,
 }
 
 /// Certainty of a decoded value.
@@ -85,6 +100,11 @@ pub trait EventReader {
     /// Returns the counts of everything in the stream that is not an event.
     fn tally(&self) -> Tally;
 
+    /// Returns the size of the camera's picture, if the stream has said it.
+    fn size(&self) -> Option<Size> {
+        None
+    }
+
     /// Sets the time of arrival of the next bytes, for a format whose events have no times.
     fn set_arrival(&mut self, _: Tick) {}
 }
@@ -96,6 +116,10 @@ pub trait EventWriter {
     /// # Errors
     /// Returns an error if the format cannot express the item, or if the output cannot be written.
     fn write(&mut self, item: &Item, output: &mut dyn Write) -> Result<()>;
+
+    /// Sets the size of the camera's picture, for a format that writes it before its first event. Has no effect if the
+    /// format's settings have a size.
+    fn set_size(&mut self, _: Size) {}
 
     /// Writes the items that [`write`](Self::write) has kept for later.
     ///

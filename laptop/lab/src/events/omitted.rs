@@ -1,6 +1,7 @@
 //! Counts of items that an event format cannot hold.
 
-use super::Item;
+use super::{EventsKind, Item};
+use crate::Result;
 use spikewire::Tick;
 
 /// Counts of items that a writer left out, and of events whose time the format changed.
@@ -26,9 +27,18 @@ impl Omitted {
         self.furthest = self.furthest.max(read.since(event).unsigned_abs());
     }
 
-    /// Counts an omitted item that is not an event. Restarts are not counted.
-    pub(super) fn leave_out(&mut self, item: Item) {
-        self.others += u64::from(item != Item::Restart);
+    /// Counts an omitted item: an event of a camera's pixel if `drops` is true, or an item that is not an event. Restarts
+    /// are not counted.
+    ///
+    /// # Errors
+    /// Returns an error for an event of a pixel if `drops` is false.
+    pub(super) fn leave_out(&mut self, item: Item, drops: bool) -> Result<()> {
+        match item {
+            Item::Pixel(_) if drops => self.drop_event(),
+            Item::Pixel(_) => return Err(EventsKind::NoPixels.into()),
+            other => self.others += u64::from(other != Item::Restart),
+        }
+        Ok(())
     }
 
     /// Formats the counts as notes for the user. The note on dropped events contains `what` in the text `no {what} for

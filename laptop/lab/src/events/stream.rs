@@ -4,6 +4,7 @@ use super::{EventReader, EventWriter, EventsKind, Format, Item, Tally};
 use crate::Result;
 use catalogue::run::{Spell, Worded, quoted};
 use spikewire::Tick;
+use std::collections::HashSet;
 use std::fmt;
 use std::io::Write;
 
@@ -19,6 +20,8 @@ pub struct Stream<'a> {
     events: u64,
     values: u64,
     addresses: Vec<u64>,
+    /// The columns and rows that had events.
+    pixels: HashSet<(u16, u16)>,
     last: Option<Tick>,
     wraps: u64,
 }
@@ -46,6 +49,7 @@ impl<'a> Stream<'a> {
             events: 0,
             values: 0,
             addresses: vec![0; 1 << 16],
+            pixels: HashSet::new(),
             last: None,
             wraps: 0,
         }
@@ -89,6 +93,9 @@ impl<'a> Stream<'a> {
     }
 
     fn write(&mut self, output: &mut dyn Write) -> Result<()> {
+        if let Some(size) = self.reader.size() {
+            self.writer.set_size(size);
+        }
         let mut items = std::mem::take(&mut self.items);
         for item in &mut items {
             self.observe(item);
@@ -100,14 +107,21 @@ impl<'a> Stream<'a> {
     }
 
     fn observe(&mut self, item: &mut Item) {
-        let (now, address) = match item {
+        let now = match item {
             Item::Event(event) => {
                 self.events += 1;
-                (&mut event.tick, event.address)
+                self.addresses[usize::from(event.address)] += 1;
+                &mut event.tick
+            }
+            Item::Pixel(event) => {
+                self.events += 1;
+                self.pixels.insert((event.x, event.y));
+                &mut event.tick
             }
             Item::Value { tick, address, .. } => {
                 self.values += 1;
-                (tick, *address)
+                self.addresses[usize::from(*address)] += 1;
+                tick
             }
             Item::Keyframe(keyframe) => {
                 self.start_at_zero(&mut keyframe.tick);
@@ -119,7 +133,6 @@ impl<'a> Stream<'a> {
             }
             _ => return,
         };
-        self.addresses[usize::from(address)] += 1;
         self.start_at_zero(now);
         if self.last.is_some_and(|last| now.micros() < last.micros() && last.is_before(*now)) {
             self.wraps += 1;
@@ -199,8 +212,11 @@ impl Worded for Stream<'_> {
     fn word(&self, f: &mut fmt::Formatter<'_>, spell: Spell) -> fmt::Result {
         let (count, what) =
             if self.values > 0 { (self.values, "values") } else { (self.events, "events") };
-        let addresses = self.addresses.iter().filter(|&&count| count > 0).count();
-        write!(f, "{} bytes, {count} {what} at {addresses} addresses", self.bytes)?;
+        let (places, of_places) = match self.pixels.len() {
+            0 => (self.addresses.iter().filter(|&&count| count > 0).count(), "addresses"),
+            pixels => (pixels, "pixels"),
+        };
+        write!(f, "{} bytes, {count} {what} at {places} {of_places}", self.bytes)?;
         if count > 0 {
             write!(f, ", {:.2} bytes each", self.bytes as f64 / count as f64)?;
         }

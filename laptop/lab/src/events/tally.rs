@@ -1,5 +1,6 @@
 //! Counts of everything in a stream that is not an event.
 
+use super::EventsKind;
 use catalogue::run::{Spell, Worded, quoted};
 use spikewire::link::Withheld;
 use std::fmt;
@@ -13,6 +14,8 @@ pub struct Tally {
     pub is_cut: bool,
     /// Number of ticks of more than 32 bits.
     pub long_ticks: u64,
+    /// Number of events in rows of a camera from 32 on, in a stream whose pixels stand for addresses.
+    pub far_rows: u64,
     /// Counts kept by the reader of link frames; `None` for other formats.
     pub link: Option<LinkTally>,
 }
@@ -114,6 +117,10 @@ impl Worded for Tally {
         writeln!(f, "{} bytes skipped", self.skipped)?;
         if self.long_ticks > 0 {
             writeln!(f, "{} ticks kept their low 32 bits", self.long_ticks)?;
+        }
+        if self.far_rows > 0 {
+            EventsKind::FarRows { events: self.far_rows }.word_about(f, spell, None)?;
+            writeln!(f)?;
         }
         if self.is_cut {
             writeln!(f, "the end is cut within an event")?;

@@ -39,7 +39,8 @@ kinds! {
         PreviewEnding => ("a preview is a .png, or animated a .gif"),
         LargeEvt2 { width: u16, height: u16 } => ("EVT2 holds up to 2048 columns and rows, not {width} x {height}"),
         EventsEnding => (
-            "events go into .es (Event Stream), .raw (EVT2) or .csv; other programs make EVT3 and AEDAT4 of these"
+            "events go into .es (Event Stream), .raw (EVT2) or .csv; `spikewire convert` makes EVT3 of these, other programs \
+             AEDAT4"
         ),
         NoWord { error: FormatError } => ("{error}"),
     }

@@ -5,10 +5,10 @@ mod overview;
 pub use overview::{ColumnSummary, Summary, summary};
 
 use super::cut::WholeLines;
-use super::header::{Header, Start, is_data};
+use super::header::{Header, Start, is_data, units};
 use super::spaces::OneBlank;
 use super::text::{decode, name, shown, unpacked};
-use super::time::{Named, Reading, TimeUnit, implausible};
+use super::time::{Named, Reading, TimeUnit, implausible, odd_rate};
 use super::time::{microseconds, number, of_given, of_name};
 use super::{ALL, CHUNK, Chunk, InputOptions, Source, TableKind, near};
 use crate::error::At;
@@ -20,9 +20,11 @@ use std::collections::VecDeque;
 use std::io::{self, BufReader, Cursor, Read};
 use std::rc::Rc;
 
-/// Names of columns that hold counts rather than samples. A column with such a name is read only if the user names it.
-const COUNTS: [&str; 8] =
-    ["index", "sample", "i", "", "unnamed: 0", "loopiteration", "lineno", "header.seq"];
+/// Names of columns that may hold counts rather than samples. A column with such a name that counts upwards is read
+/// only if the user names it.
+const COUNTS: [&str; 4] = ["loopiteration", "lineno", "header.seq", "field.header.seq"];
+/// Further such names, of a table's first column. Elsewhere, `I` is a current.
+const FIRST_COUNTS: [&str; 5] = ["index", "sample", "i", "", "unnamed: 0"];
 /// Number of rows that are examined first, to find the header and the format of the times.
 const AHEAD: usize = 64;
 
@@ -31,6 +33,11 @@ pub(super) struct Table {
     rows: Rows,
     /// Number of comment lines below the header.
     comments: Rc<Cell<u64>>,
+    /// The row of names, and the row of units below it, if there are any. Both may occur again among the samples, where
+    /// files were joined.
+    header: Vec<ByteRecord>,
+    /// Number of such rows among the samples.
+    repeated: u64,
     /// A note that tells the user which bytes were left out at the end of a truncated table.
     cut: Rc<Cell<Option<String>>>,
     ahead: VecDeque<ByteRecord>,
@@ -110,22 +117,33 @@ impl Table {
         options: &InputOptions,
     ) -> Result<Self> {
         let mut input = BufReader::with_capacity(1 << 16, text);
-        let start = Start::read(&mut input).at(|| file)?;
         let asked = options.delimiter.map(|own| own.0);
+        let start = match options.header {
+            _ if above > 0 => Start::read_plain(&mut input),
+            None => Start::read(&mut input, asked),
+            Some(line) => Start::read_to(&mut input, line),
+        };
+        let start = start.at(|| file)?;
         let comment = start.comment(asked);
         let delimiter = if above > 0 {
             b','
         } else {
             asked.or(comment.as_ref().map(|own| own.delimiter)).unwrap_or_else(|| start.delimiter())
         };
+        let mut notes = Vec::new();
+        if let Some(line) = start.header_line {
+            notes
+                .push(format!("the header is line {line}; the lines above it are left out").into());
+        }
+        let is_header_given = start.is_header_given;
         let comments = Rc::default();
         let mut rows = Rows::new(start, input, delimiter, above, &comments);
         let mut ahead = ahead(&mut rows, file)?;
         let Some(first) = ahead.front() else {
             return Err(TableKind::Empty.at(file));
         };
-        let mut notes = Vec::new();
-        let is_data = above == 0 && is_data(&ahead, delimiter);
+        let is_data = above == 0 && !is_header_given && is_data(&ahead, delimiter);
+        let mut header = Vec::new();
         let names = match comment {
             Some(Header { names, .. }) if is_data => {
                 notes.push("the header is the comment above the first row".into());
@@ -141,7 +159,8 @@ impl Table {
                 (1..=last).map(|number| number.to_string()).collect()
             }
             _ => {
-                let mut names: Vec<_> = ahead.pop_front().iter().flatten().map(name).collect();
+                header.extend(ahead.pop_front());
+                let mut names: Vec<_> = header.iter().flatten().map(name).collect();
                 // A quoted `#` before the first name, as in EuRoC's header, begins no comment.
                 if let Some(first) = names.first_mut()
                     && let Some(bare) = first.strip_prefix('#').map(str::trim_start)
@@ -152,10 +171,24 @@ impl Table {
                 names
             }
         };
+        let mut of_units = Vec::new();
+        if above == 0
+            && !header.is_empty()
+            && let Some(units) = units(&ahead, delimiter)
+        {
+            header.extend(ahead.pop_front());
+            notes.push("the line below the header holds units".into());
+            of_units = units;
+        }
+        let count = ahead.len();
+        ahead.retain(|row| !header.contains(row));
+        let repeated = (count - ahead.len()) as u64;
         let mut table = Self {
             ahead,
             rows,
             comments,
+            header,
+            repeated,
             cut,
             record: ByteRecord::new(),
             was_ahead: false,
@@ -168,62 +201,184 @@ impl Table {
             origin: Vec::new(),
             notes,
         };
-        let time = table.time_column(&names, options)?;
-        table.columns = match options.columns().collect::<Vec<_>>()[..] {
-            [] => vec![only(&names, time.as_ref().map(|(column, _)| column), file)?],
-            [ALL] => signals(&names, time.as_ref().map(|(column, _)| column)).collect(),
+        let asked: Vec<&str> = options.columns().collect();
+        let chosen = match asked[..] {
+            [] | [ALL] => None,
             ref asked => {
-                asked.iter().map(|name| find(name, &names, file)).collect::<Result<_>>()?
+                let columns = asked.iter().map(|name| {
+                    let named = |own: &Column| with_unit(own, &of_units) == *name;
+                    all(&names).find(named).map_or_else(|| find(name, &names, file), Ok)
+                });
+                Some(columns.collect::<Result<Vec<_>>>()?)
             }
         };
-        if let Some((column, named)) = time.filter(|(time, _)| !table.columns.contains(time)) {
-            if let Some(rate) = options.rate {
-                let kind = TableKind::RateAndTimes { column: column.name };
-                return Err(kind.of(Given::new("rate", rate)).at(file));
+        let time = table.time_column(&names, &of_units, chosen.as_deref(), options)?;
+        let of_time = time.as_ref().map(|(column, _)| column);
+        table.columns = match chosen {
+            Some(columns) => columns,
+            None => {
+                let signals = table.signals(&names, of_time);
+                if asked.is_empty() { vec![only(signals, &names, file)?] } else { signals }
             }
-            table.read_times(column, named, &names, options);
+        };
+        table.note_names(&names);
+        if let Some((column, named)) = time.filter(|(time, _)| !table.columns.contains(time)) {
+            table.read_times(column, named, &names, options)?;
         } else if let Some(unit) = options.time_unit {
             return Err(TableKind::NoTimes.of(Given::new("time_unit", unit)).at(file));
+        }
+        for column in &mut table.columns {
+            column.name = with_unit(column, &of_units);
         }
         table.origin = vec![("column", table.names().join(","))];
         Ok(table)
     }
 
-    /// Finds the column with the times, and the format of times that the column's name suggests.
+    /// Finds the column with the times, and the format of times that the column's name suggests. If several columns hold
+    /// times, the sensor's own stamps come before the times of arrival, and else the times that stand nearest to the
+    /// left of the first chosen column. `units` are those of the row below the header.
     fn time_column(
-        &self,
+        &mut self,
         names: &[String],
+        units: &[String],
+        chosen: Option<&[Column]>,
         options: &InputOptions,
     ) -> Result<Option<(Column, Named)>> {
         if let Some(asked) = &options.time {
             let column = find(asked, names, &self.file)?;
-            let says = of_given(&column.name);
+            let says = of_given(&with_unit(&column, units));
             return Ok(Some((column, says)));
         }
+        let mut times = self.columns_of_times(names, units);
+        if times.len() < 2 {
+            return Ok(times.pop());
+        }
+        let first = times.first().cloned();
+        times.retain(|(column, _)| self.rises(column.index));
+        let before = |(time, _): &(Column, Named)| {
+            chosen.and_then(<[Column]>::first).is_none_or(|chosen| time.index < chosen.index)
+        };
+        let stamp = times.iter().find(|(column, _)| is_stamp(&column.name));
+        let nearest = times.iter().rfind(|time| chosen.is_some() && before(time));
+        let Some(taken) = stamp.or(nearest).or(times.first()).cloned() else { return Ok(first) };
+        if times.len() > 1 {
+            let all: Vec<&str> = times.iter().map(|(column, _)| column.name.as_str()).collect();
+            let (all, read) = (all.join(", "), &taken.0.name);
+            let note = format!("columns {all} hold times, and those of `{read}` are read; ");
+            self.notes.push(Words::from(note).setting("time").text(" says if others are meant"));
+        }
+        Ok(Some(taken))
+    }
+
+    /// Returns the columns of times by their names, each with the format of times that the name suggests.
+    fn columns_of_times(&self, names: &[String], units: &[String]) -> Vec<(Column, Named)> {
         let is_betaflight = names.iter().any(|name| name == "loopIteration");
-        let times = names.iter().enumerate().filter_map(|(index, name)| {
-            let says = match of_name(name)? {
-                Named::Whole(_) if is_betaflight => Named::Whole(TimeUnit::Us),
-                Named::Dates => {
-                    Reading::new(Named::Dates, &self.first(index), self.has_decimal_commas)
-                        .map(|_| Named::Dates)?
+        let mut times = Vec::new();
+        for column in all(names) {
+            let says = match of_name(&with_unit(&column, units)) {
+                Some(Named::Whole(_)) if is_betaflight => Named::Whole(TimeUnit::Us),
+                Some(Named::Dates) => {
+                    let first = self.first(column.index);
+                    let dates = Reading::new(Named::Dates, &first, self.has_decimal_commas);
+                    if dates.is_none() || !times.is_empty() {
+                        continue;
+                    }
+                    Named::Dates
                 }
-                other => other,
+                Some(says) => says,
+                None => continue,
             };
-            Some((Column { index, name: name.clone() }, says))
-        });
-        Ok(times.into_iter().next())
+            times.push((column, says));
+        }
+        // Nanoseconds beside whole seconds are no times of their own.
+        let rests: Vec<Column> =
+            times.iter().filter_map(|(column, _)| nanoseconds(column, names)).collect();
+        times.retain(|(column, _)| !rests.contains(column));
+        times
+    }
+
+    /// Returns whether the numbers of a column rise in the first rows, as times do.
+    fn rises(&self, index: usize) -> bool {
+        // Dates have been read by their name.
+        let Some(numbers) = self.first_numbers(index) else { return true };
+        numbers.is_sorted() && numbers.first() < numbers.last()
+    }
+
+    /// Returns the numbers of a column in the first rows, or `None` if a field is no number.
+    fn first_numbers(&self, index: usize) -> Option<Vec<f64>> {
+        let fields = self.first(index).into_iter();
+        fields.map(|field| number(field, self.has_decimal_commas)).collect()
+    }
+
+    /// Returns the columns of signals: all columns except the column of times and the columns of counts. Notes the
+    /// columns of counts, as they are left out.
+    fn signals(&mut self, names: &[String], time: Option<&Column>) -> Vec<Column> {
+        let mut signals = Vec::new();
+        let mut counts = Vec::new();
+        for (index, name) in names.iter().enumerate() {
+            let column = Column { index, name: name.clone() };
+            if time.is_some_and(|time| time.index == index) {
+                continue;
+            }
+            if self.is_count(&column) {
+                counts.push(format!("`{name}`"))
+            } else {
+                signals.push(column)
+            }
+        }
+        if !counts.is_empty() {
+            let what = "counts the rows and is left out unless it is named";
+            self.notes.push(format!("column {} {what}", counts.join(", ")).into());
+        }
+        signals
+    }
+
+    /// Returns whether a column counts the rows, by its name and by its numbers in the first rows.
+    fn is_count(&self, column: &Column) -> bool {
+        let name = column.name.to_lowercase();
+        let is_named = COUNTS.contains(&name.as_str())
+            || column.index == 0 && column.name != "I" && FIRST_COUNTS.contains(&name.as_str());
+        is_named
+            && self.first_numbers(column.index).is_some_and(|numbers| {
+                numbers.iter().all(|number| number.fract() == 0.0)
+                    && numbers.windows(2).all(|pair| pair[0] < pair[1])
+            })
+    }
+
+    /// Notes the chosen columns whose name stands for several columns.
+    fn note_names(&mut self, names: &[String]) {
+        let mut noted: Vec<&str> = Vec::new();
+        let mut notes = Vec::new();
+        for column in &self.columns {
+            let same = names.iter().filter(|name| **name == column.name).count();
+            if same > 1 && !noted.contains(&column.name.as_str()) {
+                noted.push(&column.name);
+                let read = self.columns.iter().filter(|own| own.name == column.name);
+                let read: Vec<String> = read.map(|own| (own.index + 1).to_string()).collect();
+                let (name, count) = (&column.name, read.len());
+                let which =
+                    if count == 1 { "the one that is read is" } else { "those that are read are" };
+                let read = read.join(", ");
+                notes.push(
+                    format!("{same} columns are called `{name}`; {which} column {read}").into(),
+                );
+            }
+        }
+        self.notes.append(&mut notes);
     }
 
     /// Decides the format of the times in `column`, and adds a note on the format for the user. `says` is the format
     /// that the column's name suggests.
+    ///
+    /// # Errors
+    /// Returns an error that asks for the unit if it is a guess, and would give a rate that no inertial sensor has.
     fn read_times(
         &mut self,
         column: Column,
         says: Named,
         names: &[String],
         options: &InputOptions,
-    ) {
+    ) -> Result<()> {
         let first = self.first(column.index);
         let says = options.time_unit.map_or(says, Named::In);
         // If no format fits, the first field that is not a time becomes an error with its line.
@@ -239,6 +394,12 @@ impl Table {
         let time = Time { column, reading, nanoseconds, has_decimal_commas };
         let times: Option<Vec<i128>> = self.ahead.iter().map(|record| time.read(record)).collect();
         let name = &time.column.name;
+        if let (Some(times), Reading::Numbers(unit), Named::Whole(_)) = (&times, reading, says)
+            && let Some(rate) = odd_rate(times)
+        {
+            let column = name.clone();
+            return Err(TableKind::WhichUnit { column, unit, rate }.at(&self.file));
+        }
         let doubt = times.and_then(|times| implausible(&times));
         let mut note = Words::from(format!("times {how} from column `{name}`"));
         if let Some(what) = doubt {
@@ -246,6 +407,7 @@ impl Table {
         }
         self.notes.push(note);
         self.time = Some(time);
+        Ok(())
     }
 
     /// Returns the fields of a column in the first rows, which were read in advance to find the format of the times.
@@ -253,8 +415,23 @@ impl Table {
         self.ahead.iter().filter_map(|record| record.get(index)).map(<[u8]>::trim_ascii).collect()
     }
 
-    /// Goes to the next row; returns false at the end of the table.
+    /// Goes to the next row of samples; returns false at the end of the table.
     fn advance(&mut self) -> Result<bool> {
+        while self.next_row()? {
+            if !self.header.contains(&self.record) {
+                return Ok(true);
+            }
+            self.repeated += 1;
+        }
+        if self.repeated > 0 {
+            self.notes
+                .push(format!("{} lines repeat the header and are left out", self.repeated).into());
+        }
+        Ok(false)
+    }
+
+    /// Goes to the next row, even if it repeats the header; returns false at the end of the table.
+    fn next_row(&mut self) -> Result<bool> {
         let record = self.ahead.pop_front();
         self.was_ahead = record.is_some();
         if let Some(record) = record {
@@ -264,7 +441,7 @@ impl Table {
         let is_there = self.rows.next(&mut self.record, &self.file)?;
         let comments = if is_there { 0 } else { self.comments.take() };
         if comments > 0 {
-            let what = "below the header begin with # and are left out";
+            let what = "below the header begin with # or // and are left out";
             self.notes.push(format!("{comments} lines {what}").into());
         }
         if !is_there {
@@ -365,8 +542,17 @@ impl Source for Table {
 
 /// Returns whether a field is a spelling of a missing value, such as `NA`.
 pub(super) fn is_missing(field: &[u8]) -> bool {
-    const WORDS: [&str; 8] = ["", "na", "n/a", "#n/a", "<na>", "null", "none", "-"];
+    const WORDS: [&str; 10] = ["", "na", "n/a", "#n/a", "<na>", "null", "none", "-", "--", "?"];
+    // As C writes NaN under Windows: `1.#QNAN`, `-1.#IND` and, of later versions, `-nan(ind)`.
+    const STARTS: [&str; 5] = ["1.#qnan", "1.#snan", "1.#ind", "nan(", "-nan"];
+    let bare = field.strip_prefix(b"-").unwrap_or(field);
+    let begins = |start: &&str| {
+        [field, bare].iter().any(|own| {
+            own.get(..start.len()).is_some_and(|own| own.eq_ignore_ascii_case(start.as_bytes()))
+        })
+    };
     WORDS.iter().any(|word| field.eq_ignore_ascii_case(word.as_bytes()))
+        || STARTS.iter().any(begins)
 }
 
 /// A reader of a table's rows that knows the line at which each row begins.
@@ -376,6 +562,8 @@ struct Rows {
     is_of_windows: bool,
     /// Number of lines that were added at the start of the text, such as a header. The file itself has no such lines.
     above: u64,
+    /// Number of fields of the first row, which all rows must have.
+    columns: Option<usize>,
 }
 
 impl Rows {
@@ -392,8 +580,8 @@ impl Rows {
         let is_of_windows = start.is_of_windows();
         // With an end of line appended, the last line ends as all others do; an empty line is not a row.
         let end: &[u8] = if is_of_windows { b"\r\n" } else { b"\n" };
-        count.set(start.is_followed_by_comment().into());
-        let rest = Comments { input, before: b'\n', count: count.clone() };
+        count.set(start.comments_below());
+        let rest = Comments { input, before: b'\n', held: None, count: count.clone() };
         let all = Cursor::new(start.text).chain(rest).chain(end);
         let all: Box<dyn Read> =
             if delimiter == b' ' { Box::new(OneBlank::new(all)) } else { Box::new(all) };
@@ -401,15 +589,29 @@ impl Rows {
             .buffer_capacity(1 << 18)
             .comment(Some(b'#'))
             .has_headers(false)
+            .flexible(true)
             .delimiter(delimiter)
             .from_reader(all);
-        Self { reader, is_of_windows, above }
+        Self { reader, is_of_windows, above, columns: None }
     }
 
-    /// Reads the next row; returns false at the end of the table.
+    /// Reads the next row; returns false at the end of the table. A row may end in more delimiters than the first one,
+    /// with nothing behind them, as some loggers write.
     fn next(&mut self, record: &mut ByteRecord, file: &str) -> Result<bool> {
         let read = self.reader.read_byte_record(record);
-        read.map_err(|error| unreadable(error, self.line(record)).at(file))
+        if !read.map_err(|error| TableKind::Unreadable { error }.at(file))? {
+            return Ok(false);
+        }
+        let expected = *self.columns.get_or_insert(record.len());
+        let columns = record.len();
+        let is_longer = columns > expected;
+        if is_longer && record.iter().skip(expected).all(|field| field.trim_ascii().is_empty()) {
+            record.truncate(expected);
+        } else if columns != expected {
+            let (line, columns, expected) = (self.line(record), columns as u64, expected as u64);
+            return Err(TableKind::Uneven { line, columns, expected }.at(file));
+        }
+        Ok(true)
     }
 
     /// Returns the number of the line at which the row in `record` begins. This row must be the row that was read last.
@@ -421,24 +623,47 @@ impl Rows {
     }
 }
 
-/// A reader that passes on its input, and counts the lines that begin with `#`.
+/// A reader that passes on its input, and counts the lines that begin with `#` or `//`. It passes on `//` as `#`, which
+/// alone begins a comment for the reader of rows.
 struct Comments<R> {
     input: R,
-    /// The last byte read.
+    /// The last byte that was passed on.
     before: u8,
+    /// A `/` at the start of a line, as long as the byte after it is not read.
+    held: Option<u8>,
     count: Rc<Cell<u64>>,
 }
 
 impl<R: Read> Read for Comments<R> {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let read = self.input.read(bytes)?;
-        let bytes = &bytes[..read];
-        let (Some(first), Some(last)) = (bytes.first(), bytes.last()) else { return Ok(0) };
-        let begins = |before: u8, own: u8| u64::from(before == b'\n' && own == b'#');
-        let within: u64 = bytes.iter().zip(&bytes[1..]).map(|(a, b)| begins(*a, *b)).sum();
-        self.count.set(self.count.get() + begins(self.before, *first) + within);
-        self.before = *last;
-        Ok(read)
+        if bytes.len() < 2 {
+            // The reader of rows has a large buffer; no byte would be left for the one that is held.
+            return Err(io::Error::other("no room for a byte that is held"));
+        }
+        let start = usize::from(self.held.is_some());
+        bytes[..start].copy_from_slice(self.held.take().as_slice());
+        let read = self.input.read(&mut bytes[start..])?;
+        let is_over = read == 0;
+        let mut end = start + read;
+        for place in 0..end {
+            let (own, next) = (bytes[place], bytes.get(place + 1).filter(|_| place + 1 < end));
+            if self.before == b'\n' && own == b'/' {
+                match next {
+                    Some(b'/') => (bytes[place], bytes[place + 1]) = (b'#', b' '),
+                    None if !is_over => {
+                        self.held = Some(own);
+                        end = place;
+                        break;
+                    }
+                    _ => {}
+                }
+            }
+            self.count
+                .set(self.count.get() + u64::from(self.before == b'\n' && bytes[place] == b'#'));
+            self.before = bytes[place];
+        }
+        // Nothing but the byte that is held was read.
+        if end == 0 && !is_over { self.read(bytes) } else { Ok(end) }
     }
 }
 
@@ -459,15 +684,6 @@ fn ahead(rows: &mut Rows, file: &str) -> Result<VecDeque<ByteRecord>> {
 /// Returns the number of the line at which a row begins, counted from 1. The row must come from [`ahead`].
 fn line(record: &ByteRecord) -> u64 {
     record.position().map_or(1, csv::Position::line)
-}
-
-fn unreadable(error: csv::Error, line: u64) -> TableKind {
-    match *error.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len: expected, len: columns, .. } => {
-            TableKind::Uneven { line, columns, expected }
-        }
-        _ => TableKind::Unreadable { error },
-    }
 }
 
 /// Finds the column of nanoseconds that belongs to a column of whole seconds, such as `nsecs` to `secs`. ROS writes
@@ -502,14 +718,24 @@ fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
     }
 }
 
-/// Returns the columns of signals: all columns except the column of times and the columns of counts, such as `index`.
-fn signals(names: &[String], time: Option<&Column>) -> impl Iterator<Item = Column> {
-    let is_signal = move |&(index, name): &(usize, &String)| {
-        time.is_none_or(|time| time.index != index)
-            && !COUNTS.contains(&name.to_lowercase().as_str())
-    };
-    let signals = names.iter().enumerate().filter(is_signal);
-    signals.map(|(index, name)| Column { index, name: name.clone() })
+/// Returns all columns of a table.
+fn all(names: &[String]) -> impl Iterator<Item = Column> {
+    names.iter().enumerate().map(|(index, name)| Column { index, name: name.clone() })
+}
+
+/// Returns a column's name with the unit that the row below the header gives, such as `gyro_x (deg/s)`.
+fn with_unit(column: &Column, units: &[String]) -> String {
+    match units.get(column.index).filter(|unit| !unit.is_empty()) {
+        Some(unit) => format!("{} ({unit})", column.name),
+        None => column.name.clone(),
+    }
+}
+
+/// Returns whether a name is that of a sensor's own stamps, and not of the times at which its samples arrived.
+fn is_stamp(name: &str) -> bool {
+    const STAMPS: [&str; 4] = ["header.stamp", "timestamp_sample", "time_usec", "timeus"];
+    let name = name.to_lowercase();
+    STAMPS.iter().any(|stamp| name.contains(stamp))
 }
 
 /// Lists the first 20 names and the number of further names, because a table may have a million columns.
@@ -522,14 +748,13 @@ pub(super) fn first_of(names: &[String]) -> String {
     }
 }
 
-/// Returns the only column of signals: the column that holds neither times nor row numbers.
+/// Returns the only column of signals.
 ///
 /// # Errors
 /// Returns an error if there is no such column, or if there are several.
-fn only(names: &[String], time: Option<&Column>, file: &str) -> Result<Column> {
-    let mut signals = signals(names, time);
-    match (signals.next(), signals.next()) {
-        (Some(column), None) => Ok(column),
-        _ => Err(TableKind::WhichColumn { columns: first_of(names) }.at(file)),
+fn only(signals: Vec<Column>, names: &[String], file: &str) -> Result<Column> {
+    match <[Column; 1]>::try_from(signals) {
+        Ok([column]) => Ok(column),
+        Err(_) => Err(TableKind::WhichColumn { columns: first_of(names) }.at(file)),
     }
 }

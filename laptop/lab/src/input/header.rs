@@ -1,5 +1,5 @@
 //! Finds the header of a table. The header is the first line or, in files of `EuRoC`, TUM-VI and `NumPy`, a comment
-//! above the first row.
+//! above the first row. Loggers and their viewers also write lines above it, such as settings.
 
 use super::csv::is_missing;
 use super::text::name;
@@ -7,15 +7,22 @@ use super::time::number;
 use csv::{ByteRecord, ReaderBuilder};
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};
+use std::ops::Range;
 
-/// The comments at the start of a table, and the two lines after them.
+/// The comments at the start of a table, and the lines after them that were read to find the header.
 pub(super) struct Start {
-    /// The bytes of the comments and of the two lines after them, as in the file.
+    /// The bytes of the comments and of the lines after them. Lines that are left out are empty.
     pub text: Vec<u8>,
-    /// Offset in `text` of the first line that is not a comment.
+    /// Offset in `text` of the first line that is not left out and no comment.
     line: usize,
-    /// Offset in `text` of the second line after the comments.
+    /// Offset in `text` of the line after it.
     next: usize,
+    /// The delimiter that a line such as `sep=;` names.
+    separator: Option<u8>,
+    /// Number of the header's line, counted from 1, if other lines than comments stand above it.
+    pub header_line: Option<u64>,
+    /// Whether the user named the line of the header.
+    pub is_header_given: bool,
 }
 
 /// The names of a table's columns, and the delimiter between them.
@@ -24,25 +31,142 @@ pub(super) struct Header {
     pub delimiter: u8,
 }
 
+/// Longest line that is read at the start of a table, in bytes.
+const LONGEST: u64 = 1 << 20;
+
 impl Start {
     /// Reads the start of a table: the comments and empty lines at the top, the first line after them, and one more
-    /// line.
+    /// line. Reads more lines if the first one is not the header of the second one.
     ///
     /// # Errors
     /// Returns an error if the input cannot be read.
-    pub(super) fn read(input: &mut impl BufRead) -> io::Result<Self> {
-        const LONGEST: u64 = 1 << 20;
-        let mut text = Vec::new();
+    pub(super) fn read(input: &mut impl BufRead, delimiter: Option<u8>) -> io::Result<Self> {
+        let mut start = Self::empty();
+        start.read_first(input)?;
+        if let Some(separator) = separator(&start.text[start.line..start.next]) {
+            let rest = start.text.len() - start.next;
+            start.leave_out(start.line..start.next);
+            start.separator = Some(separator);
+            start.first_of(start.text.len() - rest);
+            start.read_line(input)?;
+        }
+        if !start.is_plain(delimiter) {
+            start.search(input, delimiter)?;
+        }
+        Ok(start)
+    }
+
+    /// Reads the start of a table whose first line is known to hold the names.
+    ///
+    /// # Errors
+    /// Returns an error if the input cannot be read.
+    pub(super) fn read_plain(input: &mut impl BufRead) -> io::Result<Self> {
+        let mut start = Self::empty();
+        start.read_first(input)?;
+        Ok(start)
+    }
+
+    /// Reads the start of a table whose header is line `number`, counted from 1. The lines above it are left out.
+    ///
+    /// # Errors
+    /// Returns an error if the input cannot be read.
+    pub(super) fn read_to(input: &mut impl BufRead, number: u64) -> io::Result<Self> {
+        let mut start = Self::empty();
+        for _ in 1..number {
+            input.by_ref().take(LONGEST).read_until(b'\n', &mut start.text)?;
+        }
+        start.leave_out(0..start.text.len());
+        start.line = start.text.len();
+        input.by_ref().take(LONGEST).read_until(b'\n', &mut start.text)?;
+        // The names may stand in a comment, which is none for the reader of rows then.
+        let marks = start.text[start.line..].iter_mut().take_while(|byte| b"#/ ".contains(byte));
+        marks.for_each(|byte| *byte = b' ');
+        start.next = start.text.len();
+        start.is_header_given = true;
+        input.by_ref().take(LONGEST).read_until(b'\n', &mut start.text)?;
+        bare_comment(&mut start.text[start.next..]);
+        Ok(start)
+    }
+
+    fn empty() -> Self {
+        let (text, line, next) = (Vec::new(), 0, 0);
+        Self { text, line, next, separator: None, header_line: None, is_header_given: false }
+    }
+
+    /// Reads comments and empty lines, the first line after them, and one more line.
+    fn read_first(&mut self, input: &mut impl BufRead) -> io::Result<()> {
         loop {
-            let line = text.len();
-            input.by_ref().take(LONGEST).read_until(b'\n', &mut text)?;
-            let is_passed = text[line..].starts_with(b"#") || text[line..].trim_ascii().is_empty();
-            if text.len() == line || !is_passed {
-                let next = text.len();
-                input.by_ref().take(LONGEST).read_until(b'\n', &mut text)?;
-                return Ok(Self { text, line, next });
+            let line = self.read_line(input)?;
+            let is_passed =
+                is_comment(&self.text[line..]) || self.text[line..].trim_ascii().is_empty();
+            if self.text.len() == line || !is_passed {
+                (self.line, self.next) = (line, self.text.len());
+                self.read_line(input)?;
+                return Ok(());
             }
         }
+    }
+
+    /// Reads a line, and returns its offset in `text`.
+    fn read_line(&mut self, input: &mut impl BufRead) -> io::Result<usize> {
+        let line = self.text.len();
+        input.by_ref().take(LONGEST).read_until(b'\n', &mut self.text)?;
+        bare_comment(&mut self.text[line..]);
+        Ok(line)
+    }
+
+    /// Empties lines, so that they still count as lines.
+    fn leave_out(&mut self, lines: Range<usize>) {
+        let ends = self.text[lines.clone()].iter().filter(|byte| matches!(byte, b'\r' | b'\n'));
+        let ends: Vec<u8> = ends.copied().collect();
+        self.text.splice(lines, ends);
+    }
+
+    /// Makes the line at this offset the first one.
+    fn first_of(&mut self, line: usize) {
+        let end = self.text[line..].iter().position(|byte| *byte == b'\n');
+        (self.line, self.next) = (line, end.map_or(self.text.len(), |end| line + end + 1));
+    }
+
+    /// Returns whether no header needs to be searched: the first line holds names and the second one numbers, or both
+    /// hold numbers alone.
+    fn is_plain(&self, asked: Option<u8>) -> bool {
+        let delimiter = asked.or(self.separator).unwrap_or_else(|| self.delimiter());
+        let second = self.text[self.next..].split(|byte| *byte == b'\n').next().unwrap_or_default();
+        if second.trim_ascii().is_empty() || self.is_followed_by_comment() {
+            return second.is_empty();
+        }
+        let first = split(&self.text[self.line..self.next], delimiter);
+        let second = split(second, delimiter);
+        let numbers = |row: &ByteRecord| row.iter().filter(|own| is_number(own, delimiter)).count();
+        let (above, below) = (numbers(&first), numbers(&second));
+        first.len() == second.len()
+            && (above == 0 && below > 0 || above == first.len() && below == second.len())
+    }
+
+    /// Searches the header further below, and leaves out the lines above it if it is sure: they are of other columns, or
+    /// hold texts where the rows below hold numbers.
+    fn search(&mut self, input: &mut impl BufRead, asked: Option<u8>) -> io::Result<()> {
+        /// Number of lines and of bytes within which a header is found.
+        const MOST_LINES: usize = 256;
+        const MOST: usize = 1 << 20;
+        for _ in 0..MOST_LINES {
+            let line = self.read_line(input)?;
+            if line == self.text.len() || line > MOST {
+                break;
+            }
+        }
+        let Some(header) = header_among(&self.text, self.line, asked.or(self.separator)) else {
+            return Ok(());
+        };
+        if header > self.line {
+            let above = self.text[..header].iter().filter(|byte| **byte == b'\n').count() as u64;
+            self.header_line = Some(above + 1);
+            let length = self.text.len();
+            self.leave_out(self.line..header);
+            self.first_of(header - (length - self.text.len()));
+        }
+        Ok(())
     }
 
     /// Returns whether the lines end in CR and LF.
@@ -52,14 +176,24 @@ impl Start {
 
     /// Returns whether the second line after the comments at the start is itself a comment.
     pub(super) fn is_followed_by_comment(&self) -> bool {
-        self.text[self.next..].starts_with(b"#")
+        is_comment(&self.text[self.next..])
+    }
+
+    /// Returns the number of comments after the first line, as far as lines were read.
+    pub(super) fn comments_below(&self) -> u64 {
+        let lines = self.text[self.next..].split(|byte| *byte == b'\n');
+        lines.filter(|line| is_comment(line)).count() as u64
     }
 
     /// Returns the delimiter that occurs most often in the first line after the comments. If the line contains no
     /// delimiter, returns a blank for aligned columns and a comma for all others.
     pub(super) fn delimiter(&self) -> u8 {
-        let (header, row) = (&self.text[self.line..self.next], &self.text[self.next..]);
-        match delimiter(header) {
+        let header = &self.text[self.line..self.next];
+        let row = self.text[self.next..]
+            .split_inclusive(|byte| *byte == b'\n')
+            .next()
+            .unwrap_or_default();
+        match self.separator.or_else(|| delimiter(header)) {
             Some(found) => found,
             None if is_aligned(header, row) => b' ',
             None => b',',
@@ -70,6 +204,9 @@ impl Start {
     /// line below the comments. Returns `None` if there is no such comment, or if the line below contains no number.
     /// `asked` is the delimiter, if the user gave one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
+        if self.is_header_given {
+            return None;
+        }
         let (above, line) = (&self.text[..self.line], &self.text[self.line..self.next]);
         let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
         comments.rev().find_map(|comment| {
@@ -82,6 +219,130 @@ impl Start {
             is_header.then(|| Header { names: names.iter().map(name).collect(), delimiter })
         })
     }
+}
+
+fn is_comment(line: &[u8]) -> bool {
+    line.starts_with(b"#")
+}
+
+/// Turns the mark `//` at the start of a line into `#`, the only one that the reader of rows knows.
+fn bare_comment(line: &mut [u8]) {
+    if let [first @ b'/', second @ b'/', ..] = line {
+        (*first, *second) = (b'#', b' ');
+    }
+}
+
+/// Returns the delimiter that a line such as `sep=;` names. Spreadsheets read and write such lines.
+fn separator(line: &[u8]) -> Option<u8> {
+    let line = line.trim_ascii_end();
+    let line = line.strip_prefix(b"\"").and_then(|own| own.strip_suffix(b"\"")).unwrap_or(line);
+    match *line {
+        [b's' | b'S', b'e' | b'E', b'p' | b'P', b'=', separator] => Some(separator),
+        // The end of the line was taken for blanks.
+        [b's' | b'S', b'e' | b'E', b'p' | b'P', b'='] => Some(b'\t'),
+        _ => None,
+    }
+}
+
+/// Finds the header among lines of text from the offset `from` on: the first line that holds texts where the rows below
+/// hold numbers, and that has as many fields. A row of units may stand between. Returns the header's offset, or `None`
+/// if there is none for sure.
+fn header_among(text: &[u8], from: usize, asked: Option<u8>) -> Option<usize> {
+    let mut offset = from;
+    let mut lines: Vec<(usize, &[u8])> = Vec::new();
+    for line in text[from..].split_inclusive(|byte| *byte == b'\n') {
+        if !line.trim_ascii().is_empty() && !is_comment(line) {
+            lines.push((offset, line));
+        }
+        offset += line.len();
+    }
+    let delimiter = asked.or_else(|| delimiter(lines.last()?.1))?;
+    let rows: Vec<ByteRecord> = lines.iter().map(|(_, line)| split(line, delimiter)).collect();
+    let table = Pattern::of_most(&rows[rows.len() / 2..], delimiter)?;
+    let header = (0..rows.len()).find(|row| table.is_header(&rows[*row..]))?;
+    Some(lines[header].0)
+}
+
+/// The columns that most rows of a table have.
+struct Pattern {
+    columns: usize,
+    /// Indices of the columns that hold numbers or missing values.
+    numeric: Vec<usize>,
+    delimiter: u8,
+}
+
+impl Pattern {
+    /// Finds the columns of a table. Returns `None` if there is but one column, if one of ten rows has other columns, or
+    /// if no column holds numbers. The last row may be cut.
+    fn of_most(rows: &[ByteRecord], delimiter: u8) -> Option<Self> {
+        let same = |columns: usize| rows.iter().filter(|row| row.len() == columns).count();
+        let columns = rows.iter().map(ByteRecord::len).max_by_key(|columns| same(*columns))?;
+        if columns < 2 || same(columns) * 10 < rows.len() * 9 {
+            return None;
+        }
+        let mut table = Self { columns, numeric: Vec::new(), delimiter };
+        for column in 0..columns {
+            let mut fields = rows.iter().filter_map(|row| row.get(column));
+            let mut has_number = false;
+            let are_values = fields.all(|field| {
+                has_number |= is_number(field, delimiter);
+                table.is_value(field)
+            });
+            if are_values && has_number {
+                table.numeric.push(column);
+            }
+        }
+        (!table.numeric.is_empty()).then_some(table)
+    }
+
+    fn is_value(&self, field: &[u8]) -> bool {
+        is_number(field, self.delimiter) || is_missing(field.trim_ascii())
+    }
+
+    /// Returns the fields of a row in the columns of numbers, and none if the row has other columns.
+    fn fields<'a>(&'a self, row: Option<&'a ByteRecord>) -> impl Iterator<Item = &'a [u8]> {
+        let row = row.filter(|row| row.len() == self.columns);
+        self.numeric.iter().filter_map(move |column| row?.get(*column))
+    }
+
+    fn is_row(&self, row: Option<&ByteRecord>) -> bool {
+        self.fields(row).all(|field| self.is_value(field))
+            && self.fields(row).any(|field| is_number(field, self.delimiter))
+    }
+
+    fn is_text(&self, row: Option<&ByteRecord>) -> bool {
+        self.fields(row).count() > 0
+            && self.fields(row).all(|field| !is_number(field, self.delimiter))
+    }
+
+    /// Returns whether the first of these rows holds names: it is followed by a row of numbers, perhaps with a row of
+    /// units between.
+    fn is_header(&self, rows: &[ByteRecord]) -> bool {
+        let names = self.fields(rows.first()).filter(|field| !is_missing(field.trim_ascii()));
+        let is_followed =
+            self.is_row(rows.get(1)) || self.is_text(rows.get(1)) && self.is_row(rows.get(2));
+        self.is_text(rows.first()) && names.count() * 2 > self.numeric.len() && is_followed
+    }
+}
+
+/// Returns the units that the row below a header holds, one for each column, or `None` if it is a row of samples: a row
+/// of units has no number, but stands above numbers, and has a text above one of them.
+pub(super) fn units(rows: &VecDeque<ByteRecord>, delimiter: u8) -> Option<Vec<String>> {
+    /// Units are short.
+    const LONGEST: usize = 16;
+    let (first, second) = (rows.front()?, rows.get(1)?);
+    let is_number = |field: &[u8]| is_number(field, delimiter);
+    let is_unit = |(place, field): (usize, &[u8])| {
+        !is_missing(field.trim_ascii()) && second.get(place).is_some_and(is_number)
+    };
+    let are_units = first.iter().all(|field| !is_number(field) && field.len() <= LONGEST)
+        && first.iter().enumerate().any(is_unit);
+    let bare = |field: &[u8]| {
+        let unit = name(field);
+        let within = |open, close| unit.strip_prefix(open)?.strip_suffix(close).map(str::to_owned);
+        within('(', ')').or_else(|| within('[', ']')).unwrap_or(unit)
+    };
+    are_units.then(|| first.iter().map(bare).collect())
 }
 
 /// Returns whether the first row of a table holds samples rather than names. A row without numbers holds names. A row

@@ -1,5 +1,6 @@
 //! Reasons for which a recording cannot be read.
 
+use super::{TimeUnit, UnevenRate};
 use crate::error::room;
 use catalogue::kinds;
 use flight_logs::Rest;
@@ -32,7 +33,14 @@ kinds! {
         OneColumn { command: String } => ("{command} takes one column, not all"),
         OneChannel { command: String, channels: usize } =>
             ("{command} takes one column or field, not {channels}; encode takes several"),
-        RateAndTimes { column: String } => ("{subject} contradicts the times that column {column} records"),
+        UnevenRate { uneven: UnevenRate } => (
+            "the times give {uneven}, as those of samples that arrive in bursts; {} says how many a second are taken",
+            spell("rate")
+        ),
+        WhichUnit { column: String, unit: TimeUnit, rate: f64 } => (
+            "times of column `{column}` in {unit} would be {rate:.2} samples a second; {} says their unit",
+            spell("time_unit")
+        ),
         NoTimes => ("{subject}: no column is known to hold times; {} says which", spell("time")),
         // Settings.
         TakesNo { what: &'static str } => ("{what} takes no {subject}"),

@@ -15,7 +15,7 @@ mod text;
 mod time;
 mod times;
 
-pub use clock::{Clock, Kind, Step};
+pub use clock::{Clock, Kind, Step, UnevenRate};
 pub use csv::{ColumnSummary, Summary, summary};
 pub use kinds::{LogKind, TableKind};
 pub use names::near;
@@ -66,20 +66,26 @@ pub struct ChannelOptions {
     pub columns: Vec<String>,
     /// Name of the table's column or the log's field that holds the time, such as `header.stamp`. If `None`, the time
     /// column of a table is recognised by its name, as in exports of Betaflight, `ArduPilot`, PX4, ROS and pandas. If
-    /// `None`, each message of a log has the time at which the message was recorded.
+    /// `None`, each message of a log has the sensor's own stamp if it has one that goes forward (`header.stamp`,
+    /// `timestamp_sample`, `time_usec`, `time_boot_ms`), and the time at which it was recorded otherwise. The name
+    /// `recorded` stands for the latter.
     pub time: Option<String>,
     /// Unit of the time column. By default, the unit is taken from the column's name, such as `time (us)` or
     /// `stamp_ns`, or from the column's values.
     pub time_unit: Option<TimeUnit>,
     /// Delimiter of columns: `,` `;` `|` `tab` `space`. By default, the delimiter is found in the header.
     pub delimiter: Option<Delimiter>,
+    /// Number of the line with the names of a table's columns, counted from 1. The lines above it are left out. By
+    /// default, the header is found where it is sure.
+    pub header: Option<u64>,
     /// Topic of a log. The suffix `:1` stands for the second instance of a sensor.
     pub topic: Option<String>,
     /// Fields of the topic, such as `gyro_rad[0]` or `angular_velocity.x`.
     pub field: Vec<String>,
     /// Further fields of the topic, read after those in [`field`](Self::field).
     pub fields: Vec<String>,
-    /// Samples a second, for a recording without times.
+    /// Samples a second. They stand in place of the rate that the times show, and are needed where there are no times
+    /// or where the times contradict themselves (see [`Clock::uneven`]).
     pub rate: Option<f64>,
     /// Limit on the step between the times of consecutive samples, as a multiple of the usual step. A longer step
     /// counts as a gap.
@@ -100,6 +106,7 @@ impl Default for ChannelOptions {
             time: None,
             time_unit: None,
             delimiter: None,
+            header: None,
             topic: None,
             field: Vec::new(),
             fields: Vec::new(),
@@ -220,6 +227,11 @@ pub trait Source {
     /// Returns the channels' names, which are the names of columns or fields. A name may contain commas.
     fn names(&self) -> Vec<&str>;
 
+    /// Returns the unit of each channel, if the recording gives it.
+    fn units(&self) -> Vec<Option<String>> {
+        vec![None; self.names().len()]
+    }
+
     /// Returns the origin of the channels, as keys and values for the header of a file of spikes.
     fn origin(&self) -> &[(&'static str, String)];
 
@@ -241,18 +253,14 @@ impl InputOptions {
             ("column", !self.column.is_empty()),
             ("columns", !self.columns.is_empty()),
             ("delimiter", self.delimiter.is_some()),
-            ("rate", self.rate.is_some()),
+            ("header", self.header.is_some()),
         ];
-        let of_times = [("time", self.time.is_some()), ("time_unit", self.time_unit.is_some())];
         let kind = if self.is_stdin() { None } else { flight_logs::Kind::of(&self.input)? };
         if let Some(kind) = kind {
             if let Some(named) = self.named_by_topic() {
                 return named.open_as_is();
             }
             self.refuse(&of_tables, "a log")?;
-            if kind == flight_logs::Kind::Ulog {
-                self.refuse(&of_times, "a flight log")?;
-            }
             return Ok(Box::new(messages::Channel::open(self, kind)?));
         }
         Ok(Box::new(self.open_table()?))

@@ -104,6 +104,10 @@ impl Source for Unwrapped {
         self.source.names()
     }
 
+    fn units(&self) -> Vec<Option<String>> {
+        self.source.units()
+    }
+
     fn origin(&self) -> &[(&'static str, String)] {
         self.source.origin()
     }

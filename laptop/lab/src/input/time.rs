@@ -90,7 +90,7 @@ pub(super) fn of_name(name: &str) -> Option<Named> {
     let name = name.trim().to_lowercase();
     match name.as_str() {
         // PX4's own exports count µs from the start; other programs count seconds from 1970.
-        "timestamp" => return Some(Named::Whole(TimeUnit::Us)),
+        "timestamp" | "timestamp_sample" | "time_usec" => return Some(Named::Whole(TimeUnit::Us)),
         "timeus" => return Some(Named::In(TimeUnit::Us)),
         "timems" => return Some(Named::In(TimeUnit::Ms)),
         // PlotJuggler.
@@ -112,7 +112,7 @@ pub(super) fn of_name(name: &str) -> Option<Named> {
         return Some(Named::Whole(TimeUnit::S));
     }
     let (base, word) = last_word(&name)?;
-    is_time(base).then_some(Named::In(TimeUnit::of_word(word)?))
+    is_time(base.trim_end()).then_some(Named::In(TimeUnit::of_word(word)?))
 }
 
 /// Interprets the name of the column that the user chose for the times. If the name contains no unit, the unit is
@@ -127,21 +127,24 @@ pub(super) fn of_given(name: &str) -> Named {
 }
 
 fn is_time(name: &str) -> bool {
-    matches!(
-        name,
-        "time"
-            | "timestamp"
-            | "t"
-            | "ts"
-            | "stamp"
-            | "elapsed"
-            | "elapsed time"
-            | "elapsed_time"
-            | "header.stamp"
-            | "unixtime"
-            | "unix_time"
-            | "epoch"
-    )
+    // DJI's logs have `OSD.flyTime`.
+    let is_part = name.rsplit_once('.').is_some_and(|(_, part)| part == "flytime");
+    is_part
+        || matches!(
+            name,
+            "time"
+                | "timestamp"
+                | "t"
+                | "ts"
+                | "stamp"
+                | "elapsed"
+                | "elapsed time"
+                | "elapsed_time"
+                | "header.stamp"
+                | "unixtime"
+                | "unix_time"
+                | "epoch"
+        )
 }
 
 /// Splits a name into the part before its last word and the last word, which may be a unit. Examples are `time (us)`,
@@ -266,6 +269,17 @@ fn by_value(values: &[f64], whole: TimeUnit) -> TimeUnit {
         _ if values.iter().any(|value| value.fract() != 0.0) => TimeUnit::S,
         _ => whole,
     }
+}
+
+/// Returns the rate in Hz that the first times of a recording, in ps, would give, if no inertial sensor has such a rate.
+/// Two times may be those of a table that is as short; more are needed.
+pub(super) fn odd_rate(times: &[i128]) -> Option<f64> {
+    const RATES: std::ops::RangeInclusive<f64> = 1.0..=50_000.0;
+    const FEWEST: usize = 8;
+    let [first, .., last] = times else { return None };
+    let rate = (times.len() - 1) as f64 / (last - first) as f64 * 1e12;
+    (times.len() >= FEWEST && rate.is_finite() && rate > 0.0 && !RATES.contains(&rate))
+        .then_some(rate)
 }
 
 /// Returns a note for the user if the first times of a recording, in ps, are implausible. They are implausible if all

@@ -142,6 +142,9 @@ pub struct Figures {
     pub most_clocks: u64,
     /// Number of spikes that were lost on their way into the chip.
     pub lost: u32,
+    /// Number of steps in which the potential of an output reached the end of the chip's range, so that its value is
+    /// wrong. Steps before the held-out ones count, too.
+    pub clipped: u32,
     /// Comparison of the outputs' potentials, for networks whose outputs never fire.
     pub potentials: Option<PotentialFigures>,
 }
@@ -332,6 +335,7 @@ pub(super) fn figures(
         mean_clocks: ran.clocks.iter().sum::<u64>() as f64 / steps.max(1) as f64,
         most_clocks: ran.clocks.iter().max().copied().unwrap_or(0),
         lost: ran.lost,
+        clipped: ran.clipped,
         potentials: None,
     };
     if let Some((name, outputs)) = &original.readout {

@@ -114,6 +114,8 @@ pub struct Ran {
     pub clocks: Vec<u64>,
     /// Number of spikes that were lost on their way into the chip.
     pub lost: u32,
+    /// Number of steps in which the potential of an output reached the end of the chip's range.
+    pub clipped: u32,
 }
 
 /// The result of one step on the chip's model.

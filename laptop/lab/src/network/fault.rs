@@ -167,7 +167,8 @@ kinds! {
         SilentInside => ("neurons that never fire must be the last"),
         NoReadout => ("tinyODIN has no outputs that never fire; ReckOn has"),
         NoRoomToCompare => (
-            "the network leaves no room for comparing once a step: one neuron must be free, a row for each layer, and two"
+            "the network leaves no room for comparing once a step: neurons 254 and 255 must be free, a row for each layer, \
+             and two"
         ),
         LateOutputs => ("this chip's outputs come steps later: only tinyODIN answers step by step here"),
         NoBytes => ("a network on the controller is compiled in: there are no bytes to load"),

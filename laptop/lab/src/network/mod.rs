@@ -18,7 +18,7 @@ pub use bring::{
 pub use chip::{CHIPS, Chip, Compare, OnChip, Ran, Remarks, Stepped};
 pub use controller::{
     Asked, Choice, ControllerRequest, Current, Decay, Fires, Flown, Framework, Model, Numbers,
-    Reset, Rule, bring_to_controller,
+    Reset, Rule, State, bring_to_controller,
 };
 pub use costs::Cost;
 pub use distance::Distance;

@@ -4,11 +4,11 @@ use super::decimate::{Line, Point};
 use super::layout;
 use crate::Result;
 use crate::input::InputOptions;
-use crate::look::known_unit;
 use crate::measure::Measure;
 use crate::passes::{First, Piece, each, pass};
 use crate::scheme::Scheme;
 use crate::trial::{Recording, Trial};
+use crate::unit::known_unit;
 use catalogue::run::{Asked, Event, SampleType, Settings, Shape, Words};
 use spikewire::Polarity;
 use std::collections::HashSet;
@@ -63,7 +63,7 @@ impl Picture {
         for (panel, trial) in panels.iter_mut().zip(trials) {
             trial.events.iter().for_each(|own| panel.spike(&axis, own, at(own.sample as usize)));
         }
-        let (name, unit) = (name.clone(), known_unit(name).map(str::to_owned));
+        let (name, unit) = (name.clone(), recording.unit().map(str::to_owned));
         Self { unit, name, axis, segments: segments.len(), signal, panels, is_grid }
     }
 }

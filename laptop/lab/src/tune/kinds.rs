@@ -18,7 +18,11 @@ kinds! {
              more in a period of its bandwidth"
         ),
         NotFlown { most: f64 } => ("{subject} must be 0 to {most} percent: more was not flown"),
-        NoPeriod => ("{subject} has no period of 1 µs to 65 535 µs"),
+        NoPeriod => ("{subject} has no period of 1 µs to 65 535 µs, which a frame of the link can tell"),
+        OneAChannel { values: usize, channels: usize } =>
+            ("{subject} has {values} values for {channels} channels: it takes one for all or one for each"),
+        SeveralUnits { one: String, other: String } =>
+            ("{subject} cannot be that of {one} and of {other}: it takes a value for each channel, in their order"),
         BankNeedsRate => ("a bank needs the rate of its channels"),
         SeveralSchemes => ("a flight has one scheme for all channels: {} names it", spell("scheme")),
         NeedsRate { recording: String } => ("{subject} needs the rate of {recording}"),

@@ -282,7 +282,11 @@ fn one(request: &TuneRequest, scheme: Scheme, channel: &Cut, budget: &Budget) ->
         let paper = paper.as_ref().ok_or(RequestKind::NoPaper)?;
         Goal::LeastError(paper.tally.efficiency())
     };
-    let method = Method { seed: request.seed, free_taps: request.free_taps };
+    let method = Method {
+        seed: request.seed,
+        free_taps: request.free_taps,
+        is_unchecked: channel.held_out.is_empty(),
+    };
     let found = search(&problem, method, budget);
     let Some(best) = &found.best else {
         return Ok(Outcome::Missed(format!("{} cannot be built", scheme.name()).into()));

@@ -53,6 +53,10 @@ pub struct Method {
     /// Whether the search also varies each tap of a filter by itself, after it has varied the filter's shape, length
     /// and sum.
     pub free_taps: bool,
+    /// Whether no part of the recordings checks the settings found. Of settings about as good as each other, the search
+    /// then takes those whose step doubles, if the code has such a step: without doubling, a steeper flight leaves it
+    /// behind.
+    pub is_unchecked: bool,
 }
 
 /// Number of settings that are scored before the search checks again whether to stop.
@@ -61,6 +65,8 @@ pub(super) const BATCH: usize = 64;
 const SPREAD: [f64; 8] = [99.0, 97.0, 94.0, 88.0, 78.0, 62.0, 45.0, 0.0];
 /// Smallest value to which [`Run::tighten`] reduces a parameter. The parameter limits the number of spikes in a sample.
 const ROOM: usize = 16;
+/// Name of the parameter that limits how often the step of an adaptive code doubles.
+const DOUBLINGS: &str = "doublings";
 /// Rating of invalid settings, for which no codec can be built. The search seeks small ratings, and the ratings of all
 /// valid settings are smaller than this one.
 const NONE: f64 = 1e30;
@@ -88,6 +94,7 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
             bounds: Vec::new(),
         },
         least: f64::INFINITY,
+        doubling: None,
     };
     let space = Space::new(problem.scheme, &problem.fixed, problem.extent);
     // The search starts from the paper's settings.
@@ -112,6 +119,9 @@ pub fn search(problem: &Problem, method: Method, budget: &Budget) -> Found {
         }
     }
     run.tighten(&space);
+    if method.is_unchecked {
+        run.prefer_doubling();
+    }
     if let Some(best) = &run.found.best {
         run.found.bounds = bounds(problem, &best.options);
     }
@@ -127,6 +137,8 @@ pub(super) struct Run<'a> {
     pub pieces: &'a [Piece<'a>],
     pub found: Found,
     least: f64,
+    /// The best settings whose step doubles, with their rating.
+    doubling: Option<(f64, Scored)>,
 }
 
 impl Run<'_> {
@@ -153,6 +165,10 @@ impl Run<'_> {
             if value < self.least {
                 self.least = value;
                 self.found.best = Some(own.clone());
+            }
+            let is_doubling = own.options.number(DOUBLINGS).is_some_and(|own| own > 0.0);
+            if is_doubling && self.doubling.as_ref().is_none_or(|(least, _)| value < *least) {
+                self.doubling = Some((value, own.clone()));
             }
             if own.is_allowed() || problem.goal != Goal::Front {
                 self.found.front.push(own.clone());
@@ -213,6 +229,20 @@ impl Run<'_> {
         let [scored] = self.try_all(&[options]).try_into().ok()?;
         self.found.best = scored.or(self.found.best.take());
         Some(())
+    }
+
+    /// Takes the best settings whose step doubles in place of settings whose step does not, if these are hardly better.
+    fn prefer_doubling(&mut self) {
+        /// Factor by which a rating must be smaller to count as better. On another flight, the difference between two
+        /// ratings changes by more.
+        const HARDLY: f64 = 1.02;
+        let best = self.found.best.as_ref().and_then(|own| own.options.number(DOUBLINGS));
+        if let Some((value, doubling)) = self.doubling.take()
+            && best == Some(0.0)
+            && value <= self.least * HARDLY
+        {
+            self.found.best = Some(doubling);
+        }
     }
 
     /// Improves the taps of the best filter with an evolution strategy. Restarts the strategy from the best filter so
@@ -316,7 +346,8 @@ mod tests {
                     is_stopped: &is_stopped,
                     tick: &|_, _| {},
                 };
-                let found = search(&problem, Method { seed, free_taps: false }, &budget);
+                let method = Method { seed, free_taps: false, is_unchecked: false };
+                let found = search(&problem, method, &budget);
                 assert!(found.evaluated <= evaluations);
                 let own = value(found.best.as_ref().unwrap());
                 assert!(own <= before, "{} {seed}: {own} after {before}", scheme.name());

@@ -1,12 +1,14 @@
 //! Reads fields of one topic of a log as samples.
 
 use super::damage;
+use super::stamp::{SensorStamp, Time};
+use crate::input::clock::prefers_stamps;
 use crate::input::time::{Named, TimeUnit, of_given};
 use crate::input::{CHUNK, Chunk, InputOptions, LogKind, Source, near};
 use crate::{Error, Place, Result, Spot};
 use catalogue::run::Words;
-use flight_logs::definition::{Definition, NoNumber, Path, Stamp};
-use flight_logs::{Entry, Fault, Kind, Log, Topic, microseconds, open};
+use flight_logs::definition::{Definition, NoNumber, Path};
+use flight_logs::{Entry, Fault, Kind, Log, Topic, open};
 
 /// A source of samples from one topic of a log. Each chosen field of the topic is a channel.
 pub struct Channel {
@@ -19,21 +21,27 @@ pub struct Channel {
     skip_non_finite: bool,
     /// For each topic of the log, the positions of the chosen fields; `None` if the topic's name is not the chosen one.
     plans: Vec<Option<Plan>>,
+    /// Whether samples have the sensor's own stamps; `None` until the first samples show it.
+    is_stamped: Option<bool>,
+    /// The sensor's own stamps of the chunk's samples, in µs.
+    stamps: Vec<i64>,
     samples: u64,
     values: Vec<f64>,
     origin: Vec<(&'static str, String)>,
+    /// Note for the user on the times, if these are not those of recording.
+    of_times: Option<Words>,
     notes: Vec<Words>,
 }
 
-/// Positions of the chosen fields in a message, and of the field that holds the time, if there is one.
+/// Name by which the user chooses the times at which messages were recorded.
+const RECORDED: &str = "recorded";
+
+/// Positions in a message of the chosen fields, and of the field that holds the time.
 struct Plan {
     fields: Vec<Path>,
-    time: Option<Time>,
-}
-
-enum Time {
-    Stamp(Stamp),
-    Number(Path, TimeUnit),
+    time: Time,
+    /// The sensor's own stamp, if the user chose no time.
+    stamp: Option<SensorStamp>,
 }
 
 impl Channel {
@@ -59,8 +67,11 @@ impl Channel {
             time_unit: options.time_unit,
             skip_non_finite: options.skip_non_finite,
             plans: Vec::new(),
+            is_stamped: None,
+            stamps: Vec::new(),
             samples: 0,
             values: Vec::new(),
+            of_times: None,
             notes: Vec::new(),
         })
     }
@@ -101,13 +112,20 @@ impl Channel {
         };
         let fields = self.fields.iter().map(find).collect::<Result<_>>()?;
         let time = match &self.time {
-            None => None,
-            Some(field) => Some(match definition.stamp(field) {
+            None => Time::Recorded,
+            Some(field) => match definition.stamp(field) {
                 Some(stamp) => Time::Stamp(stamp),
+                // PX4's field `timestamp` is the time at which a message was recorded.
+                None if field == RECORDED
+                    || field == "timestamp" && definition.time().is_some() =>
+                {
+                    Time::Recorded
+                }
                 None => Time::Number(find(field)?, self.unit(field)),
-            }),
+            },
         };
-        Ok(Plan { fields, time })
+        let stamp = if self.time.is_none() { SensorStamp::of(definition) } else { None };
+        Ok(Plan { fields, time, stamp })
     }
 
     /// Returns the unit of a field that holds times: the unit that the user chose or, if the user chose none, the unit
@@ -127,8 +145,8 @@ impl Channel {
         let topic = &self.log.topics()[entry.topic];
         self.values.clear();
         let read = read(topic, plan, self.log.message(), entry.time, &mut self.values);
-        let time = match read {
-            Ok(time) => time,
+        let (time, stamp) = match read {
+            Ok(Times { time, stamp }) => (time, stamp),
             Err(fault) => {
                 let what = format!("topic {}: {fault}", self.topic);
                 return Ok(self.log.faults().skip(entry.at, what)?);
@@ -147,9 +165,33 @@ impl Channel {
         for (column, value) in chunk.columns.iter_mut().zip(&self.values) {
             column.push(*value);
         }
-        chunk.times.push(time);
+        match self.is_stamped {
+            Some(true) => chunk.times.push(stamp.unwrap_or(time)),
+            Some(false) => chunk.times.push(time),
+            None => {
+                chunk.times.push(time);
+                self.stamps.extend(stamp);
+            }
+        }
         self.samples += 1;
         Ok(())
+    }
+
+    /// Decides by the first chunk if samples have the sensor's own stamps, in the place of the times of arrival.
+    fn choose_times(&mut self, chunk: &mut Chunk) {
+        if self.is_stamped.is_some() {
+            return;
+        }
+        let stamps = std::mem::take(&mut self.stamps);
+        let is_stamped = prefers_stamps(&stamps, &chunk.times);
+        self.is_stamped = Some(is_stamped);
+        let stamp = self.plans.iter().flatten().find_map(|plan| plan.stamp.as_ref());
+        if let Some(SensorStamp { name, .. }) = stamp.filter(|_| is_stamped) {
+            let note = format!("times are the sensor's own, `{name}`, and not those of arrival; ");
+            let other = format!(" {RECORDED} takes those");
+            self.of_times = Some(Words::from(note).setting("time").text(other));
+            chunk.times = stamps;
+        }
     }
 
     /// Returns the error for a recording without samples: either the log lacks the topic, or the topic has no messages.
@@ -164,27 +206,31 @@ impl Channel {
     }
 }
 
-/// Appends the values of a message's fields to `values`, and returns the message's time in µs. If an array in the
-/// message is too short to have a chosen element, the element's value is NaN. If the message holds no time, `recorded`
-/// is used: the time in ns at which the message was recorded.
+/// The times of a message in µs: the one that the user chose or that of recording, and the sensor's own stamp.
+struct Times {
+    time: i64,
+    stamp: Option<i64>,
+}
+
+/// Appends the values of a message's fields to `values`, and returns the message's times. If an array in the message is
+/// too short to have a chosen element, the element's value is NaN. `recorded` is the time in ns at which the message was
+/// recorded.
 fn read(
     topic: &Topic,
     plan: &Plan,
     message: &[u8],
     recorded: i64,
     values: &mut Vec<f64>,
-) -> Result<i64, Fault> {
+) -> Result<Times, Fault> {
     for path in &plan.fields {
         values.push(topic.number(path, message)?.unwrap_or(f64::NAN));
     }
-    Ok(match &plan.time {
-        None => microseconds(recorded),
-        Some(Time::Stamp(stamp)) => microseconds(topic.stamp(stamp, message)?.unwrap_or(recorded)),
-        Some(Time::Number(path, unit)) => match topic.number(path, message)? {
-            Some(time) => (time * unit.microseconds()).round() as i64,
-            None => microseconds(recorded),
-        },
-    })
+    let time = plan.time.read(topic, message, recorded)?;
+    let stamp = match &plan.stamp {
+        Some(stamp) => Some(stamp.time.read(topic, message, recorded)?),
+        None => None,
+    };
+    Ok(Times { time, stamp })
 }
 
 /// Lists the names of the numbers that a field contains, separated by commas.
@@ -206,12 +252,20 @@ impl Source for Channel {
         if self.samples == 0 {
             return Err(self.nothing());
         }
+        self.choose_times(chunk);
         self.notes = self.log.faults().notes().into_iter().map(Words::from).collect();
+        self.notes.extend(self.of_times.clone());
         Ok(())
     }
 
     fn names(&self) -> Vec<&str> {
         self.fields.iter().map(String::as_str).collect()
+    }
+
+    fn units(&self) -> Vec<Option<String>> {
+        let topic = self.plans.iter().position(Option::is_some);
+        let unit = |field: &String| topic.and_then(|topic| self.log.unit(topic, field));
+        self.fields.iter().map(unit).collect()
     }
 
     fn origin(&self) -> &[(&'static str, String)] {

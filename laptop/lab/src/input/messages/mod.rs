@@ -4,6 +4,7 @@
 
 mod channel;
 mod overview;
+mod stamp;
 
 pub use channel::Channel;
 pub use overview::{Overview, overview};

@@ -1,7 +1,10 @@
 //! Summarises a log: its topics, and the times of their messages.
 
 use super::damage;
+use super::stamp::SensorStamp;
 use crate::Result;
+use crate::input::CHUNK;
+use crate::input::clock::prefers_stamps;
 use crate::input::times::Times;
 use crate::input::{Clock, Rollover};
 use flight_logs::definition::Path as FieldPath;
@@ -23,6 +26,8 @@ pub struct Overview {
     pub unread: Option<String>,
     /// Number of messages of the topic.
     pub count: u64,
+    /// Name of the field with the sensor's own stamps, if the times are these. Otherwise, they are those of recording.
+    pub stamp: Option<&'static str>,
     /// The times of the messages: length, rate and gaps.
     pub clock: Clock,
     /// The wraps of the recorder's 32-bit clock: their number, and the sample before the first wrap.
@@ -48,8 +53,8 @@ pub fn overview(
             watched.push(Watched::new(topic, gap));
         }
         let own = &mut watched[entry.topic];
-        own.observe(microseconds(entry.time));
         let topic = &log.topics()[entry.topic];
+        own.observe(topic, log.message(), entry.time);
         let counted = match &own.counter {
             Some(path) => topic.number(path, log.message()).ok().flatten().map(|own| own as u32),
             None => entry.sequence,
@@ -70,6 +75,9 @@ pub fn overview(
 /// The state of one topic while its log is being summarised.
 struct Watched {
     times: Times,
+    stamp: Option<SensorStamp>,
+    /// The times of recording and the sensor's own stamps of the first messages, until one of the two is chosen.
+    first: Option<[Vec<i64>; 2]>,
     count: u64,
     /// Position of the sequence number in the messages, if messages have a sequence number.
     counter: Option<FieldPath>,
@@ -82,6 +90,8 @@ impl Watched {
         let definition = topic.definition.as_ref().ok();
         Self {
             times: Times::new(gap),
+            stamp: definition.and_then(SensorStamp::of),
+            first: Some([Vec::new(), Vec::new()]),
             count: 0,
             counter: definition.and_then(|own| own.number("header.seq").ok()),
             previous: None,
@@ -89,9 +99,32 @@ impl Watched {
         }
     }
 
-    fn observe(&mut self, time: i64) {
-        self.times.observe(time);
+    /// Takes the times of a message; `recorded` is that of recording, in ns.
+    fn observe(&mut self, topic: &Topic, message: &[u8], recorded: i64) {
+        let arrival = microseconds(recorded);
+        let stamp = self.stamp.as_ref().map(|own| own.time.read(topic, message, recorded));
+        let stamp = stamp.and_then(Result::ok);
         self.count += 1;
+        let Some([arrivals, stamps]) = &mut self.first else {
+            return self.times.observe(stamp.unwrap_or(arrival));
+        };
+        arrivals.push(arrival);
+        stamps.extend(stamp);
+        if arrivals.len() == CHUNK {
+            self.choose_times();
+        }
+    }
+
+    /// Decides by the first messages if the times are the sensor's own stamps, as for a channel that is read.
+    fn choose_times(&mut self) {
+        let Some([arrivals, stamps]) = self.first.take() else { return };
+        let is_stamped = prefers_stamps(&stamps, &arrivals);
+        if !is_stamped {
+            self.stamp = None;
+        }
+        for time in if is_stamped { stamps } else { arrivals } {
+            self.times.observe(time);
+        }
     }
 
     fn count(&mut self, sequence: u32) {
@@ -103,7 +136,8 @@ impl Watched {
         }
     }
 
-    fn summary(self, topic: &Topic) -> Overview {
+    fn summary(mut self, topic: &Topic) -> Overview {
+        self.choose_times();
         let (clock, rollover) = self.times.finish();
         let ((fields, texts), unread) = match &topic.definition {
             Ok(definition) => (definition.names(), None),
@@ -116,6 +150,7 @@ impl Watched {
             texts,
             unread,
             count: self.count,
+            stamp: self.stamp.map(|stamp| stamp.name),
             clock,
             rollover,
             missing: self.missing,

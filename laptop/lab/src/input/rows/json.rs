@@ -1,4 +1,4 @@
-//! JSON lines, with an object on each line. A member of a nested object becomes a column such as `pose.x`, and an
+//! JSON lines, with an object on each line, and arrays of objects, which are read as such lines. A member of a nested object becomes a column such as `pose.x`, and an
 //! element of an array becomes a column such as `gyro[0]`.
 
 use super::{Lines, Rows, end, odd, quote};
@@ -10,6 +10,71 @@ use std::io::{self, BufRead, BufReader, Read};
 /// Number of lines at the start of the file from which the names of the columns are taken. A name that first appears on
 /// a later line is not read.
 const AHEAD: usize = 64;
+
+/// Reads an array of objects as a CSV table.
+pub(super) fn array(input: impl Read + 'static) -> Result<Box<dyn Read>> {
+    lines(Records::new(input))
+}
+
+/// A reader that puts each object of an array of objects on a line of its own.
+struct Records<R> {
+    input: R,
+    /// Number of brackets and braces that are open.
+    depth: usize,
+    is_text: bool,
+    /// Whether the byte before was a backslash within a text.
+    is_escaped: bool,
+    is_over: bool,
+}
+
+impl<R: Read> Records<R> {
+    fn new(input: R) -> Self {
+        Self { input, depth: 0, is_text: false, is_escaped: false, is_over: false }
+    }
+
+    /// Returns the byte that stands for the next byte of the array. Bytes behind the array are kept, and are no JSON
+    /// line.
+    fn line(&mut self, byte: u8) -> u8 {
+        if self.is_text {
+            self.is_text = self.is_escaped || byte != b'"';
+            self.is_escaped = !self.is_escaped && byte == b'\\';
+            return byte;
+        }
+        match byte {
+            b'"' => self.is_text = true,
+            b'{' | b'[' => {
+                self.depth += 1;
+                if self.depth == 1 && !self.is_over {
+                    return b' ';
+                }
+            }
+            b'}' | b']' => {
+                self.depth = self.depth.saturating_sub(1);
+                if self.depth == 0 && !self.is_over {
+                    self.is_over = true;
+                    return b' ';
+                }
+            }
+            b',' if self.depth == 1 && !self.is_over => return b'\n',
+            b'\n' | b'\r' => return b' ',
+            _ => {}
+        }
+        byte
+    }
+}
+
+impl<R: Read> Read for Records<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let read = self.input.read(bytes)?;
+        if read == 0 && !self.is_over && !bytes.is_empty() {
+            return Err(io::Error::other("the JSON array has no end"));
+        }
+        for byte in &mut bytes[..read] {
+            *byte = self.line(*byte);
+        }
+        Ok(read)
+    }
+}
 
 /// Reads JSON lines as a CSV table.
 pub(super) fn lines(input: impl Read + 'static) -> Result<Box<dyn Read>> {

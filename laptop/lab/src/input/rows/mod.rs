@@ -1,4 +1,4 @@
-//! Converts tables in other formats (JSON lines, `NumPy` arrays and Parquet) to the lines of a CSV table.
+//! Converts tables in other formats (JSON lines and arrays, `NumPy` arrays and Parquet) to the lines of a CSV table.
 //!
 //! The same rules for columns, times and missing values thus apply to all tables. A number that the file stores as text
 //! keeps its digits. A binary number becomes the shortest text that reads back as the same number.
@@ -107,8 +107,8 @@ pub(super) fn of_file(path: &Path, name: &str) -> Result<Option<Box<dyn Read>>> 
     Ok(None)
 }
 
-/// Converts JSON lines or a `NumPy` array to CSV. `head` holds the first bytes of the input. If these bytes belong to
-/// neither format, returns `Ok(Err(input))` with the input unchanged.
+/// Converts JSON lines, a JSON array of objects or a `NumPy` array to CSV. `head` holds the first bytes of the input. If these bytes belong to
+/// none of these formats, returns `Ok(Err(input))` with the input unchanged.
 ///
 /// # Errors
 /// Returns an error if the first line or the header cannot be read, or holds no table.
@@ -121,6 +121,10 @@ pub(super) fn of_stream(
         numpy::array(input)
     } else if head.trim_ascii_start().starts_with(b"{") {
         json::lines(input)
+    } else if let Some(rest) = head.trim_ascii_start().strip_prefix(b"[")
+        && rest.trim_ascii_start().starts_with(b"{")
+    {
+        json::array(input)
     } else {
         return Ok(Err(Box::new(input)));
     };

@@ -2,6 +2,7 @@
 
 use super::{Lines, Rows, end, odd, quote};
 use crate::Result;
+use parquet::data_type::Decimal;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use parquet::record::reader::RowIter;
@@ -71,7 +72,55 @@ fn write(field: &Field, text: &mut Vec<u8>) {
         Field::Float(own) => decimals.format(f64::from(own)),
         Field::Double(own) => decimals.format(own),
         Field::Str(ref own) => return quote(own, text),
+        Field::Decimal(ref own) => return decimal(own, text),
         _ => "",
     };
     text.extend(digits.as_bytes());
+}
+
+/// Appends a decimal number to `text`, with all its digits. Its bytes are a whole number in two's complement, the
+/// highest byte first, and its scale is the number of digits behind the point. A number of more than 128 bits, which no
+/// sensor has, becomes a missing value.
+fn decimal(own: &Decimal, text: &mut Vec<u8>) {
+    let Ok(scale) = usize::try_from(own.scale()) else { return };
+    let bytes = own.data();
+    if bytes.len() > size_of::<i128>() {
+        return;
+    }
+    let sign = bytes.first().map_or(0, |first| if *first >= 0x80 { -1 } else { 0 });
+    let whole = bytes.iter().fold(sign, |whole: i128, byte| whole << 8 | i128::from(*byte));
+    let digits = whole.unsigned_abs().to_string();
+    let digits = format!("{digits:0>width$}", width = scale + 1);
+    let (before, behind) = digits.split_at(digits.len() - scale);
+    if whole < 0 {
+        text.push(b'-');
+    }
+    text.extend(before.as_bytes());
+    if scale > 0 {
+        text.push(b'.');
+        text.extend(behind.as_bytes());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::decimal;
+    use parquet::data_type::Decimal;
+
+    #[test]
+    fn decimals_keep_their_digits() {
+        let of_bytes = |bytes: &[u8], scale| Decimal::from_bytes(bytes.to_vec().into(), 38, scale);
+        for (own, digits) in [
+            (Decimal::from_i32(125, 9, 2), "1.25"),
+            (Decimal::from_i32(-5, 9, 3), "-0.005"),
+            (Decimal::from_i64(7, 18, 0), "7"),
+            (of_bytes(&[0xff, 0x38], 2), "-2.00"),
+            (of_bytes(&[0x7f; 16], 4), "16920405438132805438133347614397.2351"),
+            (of_bytes(&[1; 17], 0), ""),
+        ] {
+            let mut text = Vec::new();
+            decimal(&own, &mut text);
+            assert_eq!(String::from_utf8(text).unwrap(), digits);
+        }
+    }
 }

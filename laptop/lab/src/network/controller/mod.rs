@@ -19,7 +19,8 @@ use super::bring::{Brought, HeldOut, Original, figures};
 use super::chip::{OnChip, Ran, Remarks, Stepped};
 use super::costs::Cost;
 use crate::network::fault::{FitKind, Result};
-use net::{Done, Net, Recurrent, State};
+pub use net::State;
+use net::{Done, Net, Recurrent};
 use number::Number;
 use quantise::Integers;
 use serde::Deserialize;
@@ -141,6 +142,22 @@ impl Flown {
     /// Returns the network to its initial state.
     pub fn reset(&mut self) {
         self.state = self.net.state();
+    }
+
+    /// Returns the state of each layer.
+    pub fn state(&self) -> &[State<f32>] {
+        &self.state
+    }
+
+    /// Continues from `state`, which [`state`](Self::state) of the same network returned. Returns `false`, and changes
+    /// nothing, if it is the state of another network.
+    pub fn set_state(&mut self, state: Vec<State<f32>>) -> bool {
+        let is_own = state.len() == self.state.len()
+            && state.iter().zip(&self.state).all(|(new, own)| new.is_alike(own));
+        if is_own {
+            self.state = state;
+        }
+        is_own
     }
 
     /// Runs a step. `inputs` are the numbers of the inputs that fire, each below [`inputs`](Self::inputs); their order
@@ -277,7 +294,7 @@ impl OnChip for OnController {
                 (done.fired, done.potentials.iter().map(row).collect(), done.operations)
             }
         };
-        Ok(Ran { fired, potentials, clocks, lost: 0 })
+        Ok(Ran { fired, potentials, clocks, lost: 0, clipped: 0 })
     }
 
     fn follow(

@@ -124,10 +124,23 @@ impl<K: Number> Neuron<K> {
 
 /// The state of a layer between two steps.
 #[derive(Clone)]
-pub(super) struct State<K> {
+pub struct State<K> {
+    /// Potential of each neuron.
     pub potentials: Vec<K>,
-    currents: Vec<K>,
+    /// Current of each neuron; 0 of neurons without one.
+    pub currents: Vec<K>,
+    /// Neurons that fired in the last step, in ascending order.
     pub fired: Vec<u16>,
+}
+
+impl<K> State<K> {
+    /// Returns whether this can be a state of the same layer as `other`.
+    pub(super) fn is_alike(&self, other: &Self) -> bool {
+        let neurons = other.potentials.len();
+        self.potentials.len() == neurons
+            && self.currents.len() == neurons
+            && self.fired.iter().all(|own| usize::from(*own) < neurons)
+    }
 }
 
 impl<K: Number> Layer<K> {

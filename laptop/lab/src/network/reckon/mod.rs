@@ -88,6 +88,12 @@ impl OnChip for Quantised {
                 100.0 * change.relative()
             ));
         }
+        if let Some(peak) = self.output_peak {
+            notes.push(format!(
+                "outputs reach {:.0} % of their 16 bits in the recording; beyond 100 %, `run` returns `Clipped`",
+                100.0 * peak
+            ));
+        }
         if self.places.has_parts() {
             notes.push(
                 "a reset without a delay takes three of the chip's neurons for each neuron of the layer, four in a \

@@ -34,6 +34,9 @@ pub(super) const LARGEST: f64 = 127.0;
 /// Largest potential, in the chip's units, that a neuron may reach in the recording. The rest of the 16-bit range is
 /// left for other recordings.
 const ROOM: f64 = 0.8 * 32_767.0;
+/// Largest sum of an output's weights of one sign, in the chip's units and before they are rounded, if the driver leaks
+/// the outputs. Rounding up to 256 weights adds less than the rest up to [`ReckOnOutputs::LEAKY_SUM`].
+const LEAKY_ROOM: f64 = ReckOnOutputs::LEAKY_SUM as f64 - 256.0;
 /// Number of scales of weights to try for a pair: two neurons of the chip that share a leak and a threshold. The scales
 /// lie evenly between half of the largest scale at which the pair's weights and potentials fit the chip, and all of it.
 const SCALES: u32 = 200;
@@ -65,6 +68,9 @@ pub(super) struct Quantised {
     pub(super) unit: Option<f64>,
     /// For each output, the share of its potential that a step keeps. Empty unless the driver leaks the potentials.
     pub(super) keeps: Vec<f32>,
+    /// Largest share of the 16 bits of a potential that an output reaches in the recording; `None` unless the chip leaks
+    /// the potentials. Outputs whose potentials the driver leaks cannot leave the 16 bits.
+    pub(super) output_peak: Option<f64>,
     /// For each layer, how rounding changed its weights. If the outputs are potentials, one more entry is for the
     /// weights of the outputs.
     pub(super) changes: Vec<Change>,
@@ -159,6 +165,17 @@ pub(super) struct Source {
 
 fn largest(weights: impl Iterator<Item = f64>) -> f64 {
     weights.fold(0.0, |most, weight| most.max(weight.abs()))
+}
+
+/// Returns the largest sum of weights of one sign that lead to an output, without its sign.
+fn sum_of_a_sign(weights: &[Vec<f64>]) -> f64 {
+    let mut most = 0.0_f64;
+    for row in weights {
+        let rises: f64 = row.iter().filter(|weight| **weight > 0.0).sum();
+        let falls: f64 = row.iter().filter(|weight| **weight < 0.0).sum();
+        most = most.max(rises).max(-falls);
+    }
+    most
 }
 
 impl Source {
@@ -263,6 +280,7 @@ pub(super) fn quantise(
         layers: trained.layers.iter().map(|l| (l.name.clone(), l.neurons.len())).collect(),
         unit: None,
         keeps: vec![],
+        output_peak: None,
         changes: trained
             .layers
             .iter()
@@ -285,8 +303,7 @@ pub(super) fn quantise(
     ensure!(inputs <= most, FitKind::Inputs { most, inputs, has_bias });
     match &trained.readout {
         Some(readout) => {
-            let last = fired.last().map_or(&[][..], |last| last);
-            network.read_out(readout, &trained.potentials(fired), last, integers);
+            network.read_out(readout, &trained.potentials(fired), integers);
         }
         None => network.follow(trained.layers.len() - 1),
     }
@@ -576,16 +593,9 @@ impl Quantised {
     }
 
     /// Sets the weights, the shift and the leak of the outputs in a network whose outputs are potentials instead of
-    /// spikes. The chip leaks them if its one leak is near enough to all of theirs, otherwise the driver. `fired` are
-    /// the spikes of the last layer. `integers` says whether the network was trained in the chip's integers: their
+    /// spikes. The chip leaks them if its one leak is near enough to all of theirs, otherwise the driver. `integers` says whether the network was trained in the chip's integers: their
     /// weights stay as they are if the chip holds them and leaks.
-    fn read_out(
-        &mut self,
-        readout: &Readout,
-        potentials: &[Vec<f64>],
-        fired: &[Vec<u16>],
-        integers: bool,
-    ) {
+    fn read_out(&mut self, readout: &Readout, potentials: &[Vec<f64>], integers: bool) {
         let Readout { name, weights, keep } = readout;
         let ticks = self.ticks.len();
         let kept = keep.iter().map(|keep| keep.powf(1.0 / ticks as f64));
@@ -596,25 +606,19 @@ impl Quantised {
         };
         let chip_leaks = held >= 1.0 && keep.iter().all(is_near);
         let most = largest(weights.iter().flatten().copied()).max(f64::MIN_POSITIVE);
-        let (mut first, mut room) =
-            (0, ROOM / largest(potentials.iter().flatten().copied()).max(most));
+        let reached = largest(potentials.iter().flatten().copied());
+        let (mut shifts, mut room) = (0..SHIFTS, ROOM / reached.max(most));
         if !chip_leaks {
             self.keeps = keep.iter().map(|keep| *keep as f32).collect();
             held = f64::from(ReckOnOutputs::LEAKY_KEEP);
-            // A potential is at most twice the largest sum.
-            let sum = |fired: &Vec<u16>, row: &Vec<f64>| -> f64 {
-                fired.iter().map(|neuron| row[usize::from(*neuron)]).sum()
-            };
-            let sums =
-                fired.iter().flat_map(|fired| weights.iter().map(move |row| sum(fired, row)));
-            (first, room) = (1, ROOM / 2.0 / largest(sums).max(most));
+            (shifts, room) = (1..2, LEAKY_ROOM / sum_of_a_sign(weights).max(most));
         }
         let fits = |shift: &u8| LARGEST * f64::from(1 << shift) / most <= room;
         let are_whole = |shift: &u8| {
             weights.iter().flatten().all(|weight| is_whole(*weight, 1.0 / f64::from(1 << shift)))
         };
         let whole = (0..SHIFTS).find(|shift| integers && chip_leaks && are_whole(shift));
-        let shift = whole.or((first..SHIFTS).rev().find(fits)).unwrap_or(first);
+        let shift = whole.or(shifts.clone().rev().find(fits)).unwrap_or(shifts.start);
         let largest = (LARGEST * f64::from(1 << shift) / most).min(room);
         let scale = if whole.is_some() { 1.0 } else { largest };
         let mut change = Change { name: name.clone(), ..Change::default() };
@@ -631,6 +635,7 @@ impl Quantised {
         self.shared.keep = held as u8;
         // The chip sends a potential after it has leaked once more.
         self.unit = Some(if chip_leaks { OUTPUT_KEEP / held / scale } else { 1.0 / scale });
+        self.output_peak = chip_leaks.then_some(reached * scale / f64::from(i16::MAX));
     }
 
     /// Adds, for each neuron of layer `last`, an output that reports the neuron's spikes.

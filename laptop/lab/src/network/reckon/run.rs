@@ -7,7 +7,7 @@ use super::part::{Part, Seat};
 use super::quantise::Tick;
 use crate::network::fault::{ModelKind, Result};
 use silicon::reckon::{Board, Port, Spi};
-use spikewire_chips::{ReckOn, ReckOnSettings, ReckOnStepsState, ReckOnTick};
+use spikewire_chips::{ChipError, ReckOn, ReckOnSettings, ReckOnStepsState, ReckOnTick};
 
 type Chip = ReckOn<Spi, Port>;
 
@@ -38,6 +38,7 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
         potentials: vec![],
         clocks: vec![],
         lost: 0,
+        clipped: 0,
     };
     // The spikes of inner layers are taken from the model. Those of the last layer come from the chip's answers, unless
     // the answers are potentials.
@@ -56,7 +57,14 @@ pub(super) fn run(network: &Quantised, inputs: &Trains) -> Result<Ran> {
         let all = sent.len();
         sent.dedup();
         ran.lost += (all - sent.len()) as u32;
-        let values = sample.run(&steps, &mut state, sent).map_err(refused)?;
+        let values = match sample.run(&steps, &mut state, sent) {
+            Ok(values) => values,
+            Err(ChipError::Clipped { .. }) => {
+                ran.clipped += 1;
+                state.values()
+            }
+            Err(error) => return Err(refused(error)),
+        };
         if step < inputs.len() {
             ran.clocks.push(board.pins().chip.clocks - before);
         }

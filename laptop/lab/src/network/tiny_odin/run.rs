@@ -75,5 +75,5 @@ pub(super) fn run(
         clocks.push(step.clocks);
         Ok(())
     })?;
-    Ok(Ran { fired, potentials: vec![], clocks, lost })
+    Ok(Ran { fired, potentials: vec![], clocks, lost, clipped: 0 })
 }

@@ -23,6 +23,7 @@ pub(super) fn emit(network: &Gated, remarks: &Remarks) -> String {
         |row| format!("[{}]", list((0..count).map(|post| network.input_weight(row, post as u8))));
     let weights = lines((0..rows).map(row));
     let (readable, places) = (outputs.len(), list(outputs.iter()));
+    let witness = if network.has_witness() { "; then the witness" } else { "" };
     let steps = network.with_steps(steps);
     format!(
         "//! {source}, brought onto tinyODIN by `spikewire network`.
@@ -33,7 +34,7 @@ use spikewire_chips::{{Inputs, Steps, StepsLayer, TinyOdinNetwork, TinyOdinNeuro
 #[rustfmt::skip]
 pub static STEPS: Steps = {steps};
 
-/// Neurons in each layer: {layers}. The field `inputs` contains the rows of synapses that `STEPS` uses.
+/// Neurons in each layer: {layers}{witness}. The field `inputs` contains the rows of synapses that `STEPS` uses.
 #[rustfmt::skip]
 pub static NETWORK: TinyOdinNetwork<{rows}, {count}, {readable}> = TinyOdinNetwork {{
     neurons: [

@@ -19,13 +19,16 @@ use neuron::{Added, GatedNeuron};
 use rayon::prelude::*;
 use search::{Aim, CLIMBS, Drive, search};
 use shape::{Shape, rows_of, shapes};
-use spikewire_chips::{Describe, NetworkBytes, TinyOdinInput, TinyOdinNeuron};
+use spikewire_chips::{Describe, Input, NetworkBytes, TinyOdinInput, TinyOdinNeuron};
 
 const NEURONS: usize = 256;
 const ROWS: usize = 256;
 const LARGEST_RUNG: f64 = 7.0;
 const MAX_LEAK: u8 = 127;
 const MAX_POTENTIAL: u16 = 2047;
+const LEAST_POTENTIAL: i32 = -2048;
+/// Amount by which a rung raises the witness, over all layers.
+const WITNESS_RUNG: usize = LARGEST_RUNG as usize;
 /// Number of [shapes](Shape) for which the search for parameters is thorough. A rough search with all shapes selects
 /// them.
 const CHOSEN: usize = 2;
@@ -208,8 +211,37 @@ impl Gated {
         self.layers.iter().fold(inputs.clone(), of_layer)
     }
 
+    /// Returns the number of neurons in all layers.
     fn count(&self) -> usize {
         self.layers.iter().map(|layer| layer.neurons.len()).sum()
+    }
+
+    /// Returns whether the network has a witness after its layers: a neuron that shows whether the chip has dropped an
+    /// event, as `spikewire_chips::Steps` documents. It needs a free neuron, and a weight of 1 or more to raise each layer.
+    fn has_witness(&self) -> bool {
+        self.count() < usize::from(TinyOdinInput::PROBED) && self.layers.len() <= WITNESS_RUNG
+    }
+
+    /// Returns the weight of the synapse in row `row` that leads to the witness.
+    fn witness_row(&self, row: usize) -> i8 {
+        let (sources, _) = self.rows();
+        let layers = self.layers.len();
+        let Some(gate) = row.checked_sub(sources.into()) else { return 0 };
+        let weight = match gate.checked_sub(layers) {
+            // The rows that raise the layers share the rung. The first of them have what does not divide evenly.
+            None => (WITNESS_RUNG / layers + usize::from(gate < WITNESS_RUNG % layers)) as i8,
+            Some(0) => -(WITNESS_RUNG as i8),
+            Some(_) => WITNESS_RUNG as i8,
+        };
+        if self.has_witness() { weight } else { 0 }
+    }
+
+    /// Returns the witness before the first step. Its potential rises by at most 7 for each of 584 rungs, and stays below
+    /// the threshold.
+    fn witness(&self) -> TinyOdinNeuron {
+        let lowered = WITNESS_RUNG as i32 * i32::from(self.shape.rungs());
+        let potential = (-lowered).max(LEAST_POTENTIAL) as i16;
+        TinyOdinNeuron { threshold: MAX_POTENTIAL, leak: 0, potential, is_disabled: false }
     }
 
     /// Finds the chip's neuron `neuron` in the network. Returns the index of its layer, its index in this layer, and
@@ -234,7 +266,9 @@ impl Gated {
     /// Returns the weight of the synapse in row `row` that leads to the chip's neuron `post`. `spikewire_chips::Steps`
     /// documents the order of the rows.
     fn row(&self, row: usize, post: usize) -> i8 {
-        let Some((layer, _, neuron)) = self.at(post) else { return 0 };
+        let Some((layer, _, neuron)) = self.at(post) else {
+            return if post == self.count() { self.witness_row(row) } else { 0 };
+        };
         let rows = self.shape.rows.len();
         let mut at = row;
         let mut take = |sources: usize| {
@@ -304,11 +338,14 @@ impl GatedLayer {
 
 impl Describe<TinyOdinInput> for Gated {
     fn neurons(&self) -> u16 {
-        self.count() as u16
+        (self.count() + usize::from(self.has_witness())) as u16
     }
 
     fn neuron(&self, neuron: u8) -> TinyOdinNeuron {
-        let Some((_, _, neuron)) = self.at(neuron.into()) else { return TinyOdinNeuron::DISABLED };
+        let Some((_, _, neuron)) = self.at(neuron.into()) else {
+            let is_witness = usize::from(neuron) == self.count() && self.has_witness();
+            return if is_witness { self.witness() } else { TinyOdinNeuron::DISABLED };
+        };
         let (potential, threshold) = neuron.held(&self.shape);
         TinyOdinNeuron { threshold, leak: neuron.leak, potential, is_disabled: false }
     }

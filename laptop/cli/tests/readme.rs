@@ -1,0 +1,80 @@
+//! The examples of the README run as they stand there.
+
+#![cfg(unix)]
+
+mod common;
+
+use std::path::Path;
+use std::process::Command;
+
+/// What stands in an example that cannot run here: files of the reader's own, boards, and work of minutes.
+const NOT_HERE: [&str; 10] = [
+    "cargo install",
+    "flight.ulg",
+    "clip.",
+    "frames pictures",
+    "spikewire listen",
+    "spikewire capture",
+    "signal --seconds",
+    "trained.nir",
+    "turns.nir",
+    "spikewire bench",
+];
+
+/// Returns the commands of the README: its lines in blocks of `sh`, with those that a backslash joins as one.
+fn commands() -> Vec<String> {
+    let text = include_str!("../README.md");
+    let mut all = Vec::new();
+    let (mut is_within, mut is_open) = (false, false);
+    for line in text.lines() {
+        match line {
+            "```sh" => is_within = true,
+            "```" => is_within = false,
+            _ if is_within => {
+                let (own, goes_on) = match line.strip_suffix('\\') {
+                    Some(own) => (own, true),
+                    None => (line, false),
+                };
+                if is_open {
+                    let last: &mut String = all.last_mut().unwrap();
+                    last.push_str(own);
+                } else {
+                    all.push(own.to_owned());
+                }
+                is_open = goes_on;
+            }
+            _ => {}
+        }
+    }
+    all
+}
+
+/// Each command that needs nothing but the repository's own recordings succeeds. Searches are shortened: they need not
+/// find the best.
+#[test]
+fn the_examples_of_the_readme_succeed() {
+    let directory = tempfile::tempdir().unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data").canonicalize().unwrap();
+    std::os::unix::fs::symlink(data, directory.path().join("data")).unwrap();
+    let programs = Path::new(env!("CARGO_BIN_EXE_spikewire")).parent().unwrap().to_owned();
+    let path = std::env::var("PATH").unwrap();
+    let mut count = 0;
+    for command in commands() {
+        if NOT_HERE.iter().any(|words| command.contains(words)) {
+            continue;
+        }
+        let is_search =
+            ["spikewire tune ", "spikewire advise "].iter().any(|own| command.starts_with(own));
+        let short = if is_search { " --evaluations 60" } else { "" };
+        let ran = Command::new("sh")
+            .args(["-c", &format!("{command}{short}")])
+            .current_dir(directory.path())
+            .env("PATH", format!("{}:{path}", programs.display()))
+            .output()
+            .unwrap();
+        assert!(ran.status.success(), "{command}: {}", String::from_utf8_lossy(&ran.stderr));
+        count += 1;
+    }
+    // Of the first block all but the ULog's and the board's, and the block of `tune`.
+    assert!(count >= 12, "{count}");
+}
