@@ -70,20 +70,32 @@ impl Place {
         Some(())
     }
 
+    /// Whether events have step numbers.
+    #[inline]
+    pub(super) fn has_numbers(&self) -> bool {
+        self.coding.step_bits > 0
+    }
+
     /// Whether an event of this address has its step number.
     #[inline]
     pub(super) fn has_number(&self, address: u16) -> bool {
-        let is_known = self.numbered.unbounded_shr(address.into()) & 1 == 1;
-        self.coding.step_bits > 0 && Steps::has(address) && !is_known
+        self.has_numbers() && self.is_first_of(address)
+    }
+
+    #[inline(never)]
+    fn is_first_of(&self, address: u16) -> bool {
+        Steps::has(address) && self.numbered.unbounded_shr(address.into()) & 1 == 0
     }
 
     /// Takes the bits of an event; `None` if they code no event.
     #[inline]
     pub(super) fn take(&self, bits: &mut impl TakeBits) -> Option<Numbered> {
         let event = self.take_event(bits)?;
-        let has_number = self.has_number(event.address);
-        let number = if has_number { bits.take(self.coding.step_bits.into())? } else { 0 };
-        Some(Numbered { event, number: has_number.then_some(number as u8) })
+        let mut number = None;
+        if self.has_number(event.address) {
+            number = Some(bits.take(self.coding.step_bits.into())? as u8);
+        }
+        Some(Numbered { event, number })
     }
 
     #[inline]
@@ -116,7 +128,7 @@ impl Place {
     pub(super) fn pass(&mut self, event: Event) {
         self.tick = event.tick;
         self.next_address = u32::from(event.address) + 1;
-        if Steps::has(event.address) {
+        if self.has_numbers() && Steps::has(event.address) {
             self.numbered |= 1_u16.wrapping_shl(event.address.into());
         }
     }

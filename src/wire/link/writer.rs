@@ -456,7 +456,7 @@ impl<'a> FrameWriter<'_, 'a> {
     #[inline(never)]
     pub(super) fn put(&mut self, event: Event) -> Option<()> {
         self.put_lead();
-        let steps = self.steps.after(event);
+        let steps = if self.place.has_numbers() { self.steps.after(event) } else { self.steps };
         let mut word = Word::default();
         self.place.put(event, self.tick, &mut word)?;
         if let Some(number) = self.number(event, steps) {
