@@ -1,12 +1,13 @@
 """Reads and writes event files with other people's programs.
 
     peers.py read  es|evt2|evt3 FILE   prints a line for each event: time, address, polarity
-    peers.py write es|evt2|evt3 FILE   writes the events of such lines on standard input
+    peers.py write es|evt2 FILE        writes the events of such lines on standard input
 """
 
 import sys
 
 import event_stream
+import evt3
 import numpy
 from expelliarmus import Wizard
 
@@ -28,28 +29,33 @@ def write_es(path, events):
         encoder.write(chunk)
 
 
-def read_evt(path, encoding):
-    for time, x, y, polarity in Wizard(encoding=encoding).read(path):
+def read_evt2(path):
+    for time, x, y, polarity in Wizard(encoding="evt2").read(path):
         yield time, int(y) << 11 | int(x), polarity
 
 
-def write_evt(path, events, encoding):
+# expelliarmus adds 4096 us wherever the low bits of EVT3's time wrap, also if the upper bits have been sent.
+def read_evt3(path):
+    events = evt3.decode_file(path)
+    for time, x, y, polarity in zip(events.timestamp, events.x, events.y, events.polarity):
+        yield time, int(y) << 11 | int(x), int(polarity)
+
+
+def write_evt2(path, events):
     fields = [("t", "<i8"), ("x", "<i2"), ("y", "<i2"), ("p", "u1")]
     rows = [(t, address & 0x7FF, address >> 11, polarity) for t, address, polarity in events]
-    Wizard(encoding=encoding).save(path, numpy.array(rows, dtype=fields))
+    Wizard(encoding="evt2").save(path, numpy.array(rows, dtype=fields))
 
 
 def main():
     action, kind, path = sys.argv[1:]
     if action == "read":
-        for event in read_es(path) if kind == "es" else read_evt(path, kind):
+        readers = {"es": read_es, "evt2": read_evt2, "evt3": read_evt3}
+        for event in readers[kind](path):
             print(*event)
     else:
         events = [tuple(map(int, line.split())) for line in sys.stdin]
-        if kind == "es":
-            write_es(path, events)
-        else:
-            write_evt(path, events, kind)
+        (write_es if kind == "es" else write_evt2)(path, events)
 
 
 if __name__ == "__main__":

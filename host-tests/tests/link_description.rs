@@ -236,6 +236,8 @@ fn descriptions_of_other_types_differ() {
         bank(&[FirstOrder::low_pass(40.0, 400.0).before(step).fingerprint()]),
         bank(&[Biquad::low_pass(40.0, 400.0).before(step).fingerprint()]),
         bank(&[Biquad::notch(40.0, 400.0, 2.0).before(step).fingerprint()]),
+        // Of the same gain and damping, but of another tap.
+        bank(&[Biquad::low_pass_with_q(40.0, 400.0, 2.0).before(step).fingerprint()]),
         Fingerprint::of_bank(SampleKind::F32, 0, 20, &[step.fingerprint()]),
         Fingerprint::of_bank(SampleKind::F32, 1, 0, &[step.fingerprint()]),
         Fingerprint::of_bank(SampleKind::Fixed32 { fraction: 0 }, 0, 0, &[step.fingerprint()]),

@@ -409,8 +409,8 @@ fn sub_timesteps_have_room_in_a_period() {
         }
         let (mut source, mut buffer) = (FromItems(items.0.into_iter()), [0; MAX_FRAME]);
         while let Some(mut bytes) = link.next_frame(&mut source, &mut buffer).unwrap() {
-            let received = reader.next_frame(&mut bytes).unwrap();
-            receiver.apply(&received, |_, _, _| ());
+            let frame = reader.next_frame(&mut bytes).unwrap();
+            receiver.apply(&frame, |_, _, _| ());
         }
         let why = receiver.withheld(0);
         let is_refused = matches!(why, Some(Withheld::Slots { slots: 8, slot_ticks: 125, .. }));
@@ -452,11 +452,11 @@ fn a_session_that_is_used_again_is_heard_within_sixteen_frames() {
                 }
                 for frame in &two[first_lost..] {
                     let mut bytes = &frame[..];
-                    let Some(received) = reader.next_frame(&mut bytes) else {
+                    let Some(frame) = reader.next_frame(&mut bytes) else {
                         left_out += 1;
                         continue;
                     };
-                    receiver.apply(&received, |_, _, _| ());
+                    receiver.apply(&frame, |_, _, _| ());
                     let is_old = receiver.exact(0).is_some_and(|exact| exact < 5_000);
                     assert!(!is_old, "{joined} {heard} {first_lost}");
                 }

@@ -686,6 +686,27 @@ fn a_first_frame_is_a_start_unless_it_is_the_one_that_came() {
     assert!(taken[21..].iter().all(goes_on));
 }
 
+/// Sixteen late frames in a row are those of another start; fewer are late, whatever comes then.
+#[test]
+fn sixteen_late_frames_show_a_session_that_is_used_again() {
+    let at = |address| frames_of(session_from(1_000), address, 60);
+    let (old, new) = (at(1), at(2));
+    for late in [1, 14, 15, 16, 30] {
+        let (taken, reader) = read(old[..40].iter().chain(&new[1..=late]).chain(&old[40..]));
+        let is_again = late >= 16;
+        assert_eq!(reader.late() as usize, late.min(15), "{late}");
+        let start = taken.iter().position(|frame| frame.3 && frame.0 == 2);
+        assert_eq!(start, is_again.then_some(40), "{late}");
+        if !is_again {
+            assert_eq!(taken[40], (1, 40, 0, false), "{late}");
+        }
+    }
+    // One that is delivered between them ends the row.
+    let mixed = new[1..=14].iter().chain(&old[40..41]).chain(&new[1..=14]).chain(&old[41..]);
+    let (taken, reader) = read(old[..40].iter().chain(mixed));
+    assert_eq!((taken.len(), reader.late()), (60, 28));
+}
+
 /// What a gap and what a start is, by numbers and by times.
 #[test]
 fn gaps_end_where_no_outage_lasts() {

@@ -74,6 +74,15 @@ struct Truth<S> {
     values: [S; CHANNELS],
 }
 
+/// The clock of samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Clock {
+    /// Of one rate.
+    Constant,
+    /// Within its tolerance: at any time and to any rate, or steadily if there are sub-timesteps.
+    Changing,
+}
+
 /// Both ends of a link, and the truth beside them.
 struct World<'a, P: Scheme> {
     scheme: &'a P,
@@ -95,8 +104,7 @@ struct World<'a, P: Scheme> {
     near: u32,
     /// In millionths, to which the remainder of a tick adds up.
     drift: i64,
-    /// Whether the clock changes within its tolerance: at any time and to any rate, or steadily if it has sub-timesteps.
-    changes: bool,
+    clock: Clock,
     remainder: i64,
     /// A bank that shares the link, and the receiver that is joined with the other.
     second: Option<Second>,
@@ -174,7 +182,7 @@ impl<'a, P: Storable> World<'a, P> {
             is_attack,
             near,
             drift,
-            changes,
+            clock: if changes { Clock::Changing } else { Clock::Constant },
             remainder: 0,
             second: is_joined.then(Second::new),
             first: 0,
@@ -319,7 +327,7 @@ impl<'a, P: Storable> World<'a, P> {
         if self.is_attack {
             self.step();
         }
-        if self.is_attack && self.changes {
+        if self.is_attack && self.clock == Clock::Changing {
             self.change_clock();
         }
         self.remainder += i64::from(self.period) * self.drift;
@@ -476,7 +484,7 @@ impl<'a, P: Storable> World<'a, P> {
             for &&(_, tick, claimed) in &heard[first..] {
                 // Samples of a silence are told where the pace has them that was measured before.
                 let silence = begin.map_or(0, |begin| tick.since(begin).unsigned_abs());
-                let near = self.near + if self.changes { silence / 25 } else { 0 };
+                let near = self.near + if self.clock == Clock::Changing { silence / 25 } else { 0 };
                 let from = self.truth.partition_point(|truth| truth.number < self.claimed[channel]);
                 // Ticks come again after 2³² µs: of samples with such a tick one has the value.
                 let is_near = |truth: &&Truth<P::Sample>| {
@@ -571,7 +579,7 @@ impl<'a, P: Storable> World<'a, P> {
         let mut samples = full + 6 * self.beat + self.beside.recovery() + 5;
         let from = self.truth.len();
         let is_attack = std::mem::take(&mut self.is_attack);
-        if self.changes {
+        if self.clock == Clock::Changing {
             // The pace that was measured may be that of another clock.
             samples += 300;
         }

@@ -593,3 +593,40 @@ fn sub_timesteps_are_told_apart_only_while_the_clock_is_known() {
     let heard = fly(&SPIKE, known, drifting(50), 400);
     assert!(heard.wrong == 0 && heard.right > 3_000, "{heard:?}");
 }
+
+/// What was measured of one start says nothing of the next, whose clock may be at the other end of its tolerance.
+#[test]
+fn a_start_is_measured_anew() {
+    static SPIKE: FirstSpike<f32, 50> = FirstSpike::logarithmic(0.0..=2.0, 100.0);
+    let (mut reader, mut receiver) =
+        (Reader::<MAX_FRAME>::new(), Receiver::<_, 1, 64>::new(&SPIKE).with_slot_ticks(SLOT));
+    for (session, period) in [(1, 2_545), (2, 2_455), (3, 2_545)] {
+        let mut bank = Bank::<_, 1>::new(&SPIKE).with_slot_ticks(SLOT);
+        let mut link = Transmitter::for_bank(&bank, LATE_PERIOD, Session::counted(session));
+        let (mut encoder, mut decoder) = (SPIKE.encoder(), SPIKE.decoder());
+        let (mut truth, mut right) = (Vec::new(), 0);
+        for number in 0..400 {
+            let tick = Tick::from(1_000_000 * session + number * period);
+            let sample = 1.0 + (number as f32 * 0.07).sin() * 0.8;
+            let queue = EventQueue::<128>::new(Overflow::Refuse);
+            bank.encode_into(tick, [sample], &queue);
+            truth.push((tick, decoder.decode(encoder.encode(sample))));
+            if number % 10 == 5 {
+                bank.keyframe_into(tick, &queue);
+            }
+            let (mut consumer, mut buffer) = (queue.consumer().unwrap(), [0; MAX_FRAME]);
+            while let Some(mut bytes) = link.next_frame(&mut consumer, &mut buffer).unwrap() {
+                let frame = reader.next_frame(&mut bytes).unwrap();
+                let mut last = None;
+                receiver.apply(&frame, |_, tick, value| last = Some((tick, value)));
+                if let (Some((tick, value)), Some(_)) = (last, receiver.exact(0)) {
+                    let near = |known: Tick| tick.since(known).unsigned_abs() <= SLOT / 2;
+                    let truth = truth.iter().find(|(known, _)| near(*known));
+                    assert_eq!(truth.map(|truth| truth.1), Some(value), "{session} {number}");
+                    right += 1;
+                }
+            }
+        }
+        assert!(right > 200, "{session}: {right}");
+    }
+}

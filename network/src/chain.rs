@@ -1,5 +1,6 @@
 //! Networks: chains of layers.
 
+use crate::checksum::Checksum;
 use core::fmt::Debug;
 use spikewire::{Event, Tick};
 
@@ -14,12 +15,18 @@ pub trait Network: Copy {
     /// Number of neurons in the last layer.
     const OUTPUTS: usize;
 
-    /// Returns a state at rest: all potentials and currents 0, and nothing fired.
+    /// Returns a state at rest: all potentials and currents 0, and nothing fired. The state belongs to this network, and
+    /// to its copies, which have the same weights and neurons.
     fn state(&self) -> Self::State;
 
     /// Runs a step through all layers, and returns the neurons of the last layer that fired, in rising order. Inputs
-    /// that the network does not have, and values that are not finite, are left out and [counted](State::rejected).
+    /// that the network does not have, and values that are not finite, are left out and [counted](State::rejected). The
+    /// state of another network is counted too; it is at rest before the step, and belongs to this network from then on.
     fn step<'s>(&self, state: &'s mut Self::State, input: &Self::Input) -> &'s [u16];
+
+    /// Returns a checksum over all weights and neurons as they are in memory. A change of bits within one number always
+    /// changes it: a firmware compares it with the one that it had, before arming.
+    fn checksum(&self) -> u32;
 }
 
 /// The state of a network.
@@ -34,7 +41,7 @@ pub trait State: Copy + Debug {
     fn values(&self) -> &[Self::Value];
 
     /// Returns the number of inputs that were left out: spikes of inputs that do not exist, and values that are not
-    /// finite or above ±10¹⁵.
+    /// finite or above ±10⁶; and how often a layer was given the state of another one.
     fn rejected(&self) -> u32;
 
     /// Returns how often a potential or current left the range of its integer type, and was clamped.
@@ -89,6 +96,13 @@ impl<A: Network, B: Network<Input = [u16]>> Network for Then<A, B> {
     fn step<'s>(&self, state: &'s mut Self::State, input: &A::Input) -> &'s [u16] {
         let spikes = self.first.step(&mut state.first, input);
         self.next.step(&mut state.next, spikes)
+    }
+
+    fn checksum(&self) -> u32 {
+        let mut sum = Checksum::new();
+        sum.add(self.first.checksum());
+        sum.add(self.next.checksum());
+        sum.end()
     }
 }
 

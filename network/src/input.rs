@@ -169,12 +169,6 @@ impl<V: Number> Input<V> for Values {
         first: usize,
         sums: &mut [V],
     ) {
-        const {
-            assert!(
-                IN <= 128,
-                "a layer takes 128 values at most, so that sums of them fit 32 bits"
-            );
-        };
         V::add_values(&weights.rows, weights.scale, values, first, sums);
     }
 }

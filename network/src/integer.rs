@@ -1,5 +1,6 @@
 //! Integer potentials, with weights of 8 bits.
 
+use crate::checksum::Checksum;
 use crate::number::{IS_SMALL, Number, OUTSIDE, block};
 use crate::sealed::Sealed;
 use core::hint::black_box;
@@ -129,6 +130,23 @@ impl Number for i32 {
 
     fn accept(value: i16) -> Option<i16> {
         Some(value)
+    }
+
+    fn word(self) -> u32 {
+        self.cast_unsigned()
+    }
+
+    fn word_of_factor(factor: u32) -> u32 {
+        factor >> DECAY_SHIFT
+    }
+
+    fn add_rows<const OUT: usize>(rows: &[Packed<OUT>], scale: i16, sum: &mut Checksum) {
+        for row in rows {
+            for &byte in &row.0 {
+                sum.add(byte.into());
+            }
+        }
+        sum.add(u32::from(scale.cast_unsigned()));
     }
 
     #[inline(always)]

@@ -1,6 +1,7 @@
 //! Layers: weights, neurons and recurrence.
 
 use crate::chain::{Network, State, Then};
+use crate::checksum::Checksum;
 use crate::input::{Input, Spiking, Values};
 use crate::neuron::Neuron;
 use crate::number::{IS_SMALL, Number, OUTSIDE};
@@ -14,9 +15,11 @@ use core::{fmt::Debug, hint::black_box, slice};
 /// - **Order of additions:** first a neuron's bias; then the weights of the inputs, in the order of the list (or of
 ///   values, in the order of the inputs); then the weights of the neurons of this layer that fired in the step before, in
 ///   rising order. Each addition and product is rounded by itself.
+/// - **Size:** a layer of values has 128 inputs at most; a layer with weights of 8 bits has 4096 inputs at most, those of
+///   its own spikes included. Others fail the build where they are made.
 /// - **Work:** a step adds a row for each spike, for up to 16 neurons at a time, and visits each neuron once. If there are
 ///   more spikes than inputs, as some inputs fire several times, the additional ones take about twice as long.
-/// - **Memory:** potentials, currents, and two bytes for each neuron in a list of spikes. On the stack: four bytes for each
+/// - **Memory:** potentials, currents, two bytes for each neuron in a list of spikes, and 24 bytes. On the stack: four bytes for each
 ///   input, and four for each neuron if the layer is recurrent.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a, N: Neuron, const IN: usize, const OUT: usize, I = Spiking, R = Forward> {
@@ -34,7 +37,13 @@ pub struct LayerState<V, C, const OUT: usize> {
     spikes: Spikes<OUT>,
     rejected: u32,
     saturated: u32,
+    /// The layer to which the state belongs.
+    owner: Owner,
 }
+
+/// Addresses of a layer's weights and neurons, which tell it from others of its type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Owner(usize, usize);
 
 impl<'a, N: Neuron, const IN: usize, const OUT: usize> Layer<'a, N, IN, OUT> {
     /// Makes a layer whose inputs are spikes.
@@ -43,8 +52,14 @@ impl<'a, N: Neuron, const IN: usize, const OUT: usize> Layer<'a, N, IN, OUT> {
         Self { weights, neurons, recurrence: Forward, input: Spiking }
     }
 
-    /// Makes the layer take a value for each input, instead of spikes.
+    /// Makes the layer take a value for each of up to 128 inputs, instead of spikes.
     pub const fn of_values(self) -> Layer<'a, N, IN, OUT, Values> {
+        const {
+            assert!(
+                IN <= 128,
+                "a layer takes 128 values at most, so that sums of them fit 32 bits"
+            );
+        };
         let Self { weights, neurons, .. } = self;
         Layer { weights, neurons, recurrence: Forward, input: Values }
     }
@@ -53,7 +68,16 @@ impl<'a, N: Neuron, const IN: usize, const OUT: usize> Layer<'a, N, IN, OUT> {
 impl<'a, N: Neuron, const IN: usize, const OUT: usize, I: Copy> Layer<'a, N, IN, OUT, I> {
     /// Makes the layer recurrent: its spikes act on it in the next step, by [`Full`](crate::Full) or
     /// [`OneToOne`](crate::OneToOne) weights.
-    pub const fn recurrent<R: Copy>(self, recurrence: R) -> Layer<'a, N, IN, OUT, I, R> {
+    pub const fn recurrent<R: Recurrence<N::Value, OUT>>(
+        self,
+        recurrence: R,
+    ) -> Layer<'a, N, IN, OUT, I, R> {
+        const {
+            assert!(
+                R::HAS_OWN || IN + OUT <= N::Value::MOST_SPIKES,
+                "a recurrent layer of 8-bit weights has 4096 inputs and neurons at most, so that sums fit 32 bits"
+            );
+        };
         let Self { weights, neurons, input, .. } = self;
         Layer { weights, neurons, recurrence, input }
     }
@@ -87,12 +111,16 @@ where
             spikes: Spikes::new(),
             rejected: 0,
             saturated: 0,
+            owner: self.owner(),
         }
     }
 
     #[inline(never)] // so that the lists of two layers take the same stack
     fn step<'s>(&self, state: &'s mut Self::State, input: &I::Of<IN>) -> &'s [u16] {
-        let LayerState { potentials, currents, spikes, rejected, saturated } = state;
+        if state.owner != self.owner() {
+            self.adopt(state);
+        }
+        let LayerState { potentials, currents, spikes, rejected, saturated, .. } = state;
         let (mut checked, mut before) = (I::Checked::default(), R::Before::default());
         I::check(self.weights, input, &mut checked, rejected);
         self.recurrence.begin(spikes, &mut before);
@@ -113,6 +141,34 @@ where
             step.one(number, v, current, neuron);
         }
         spikes.as_slice()
+    }
+
+    fn checksum(&self) -> u32 {
+        let mut sum = Checksum::new();
+        // The compiler knows what constants hold, and would work out their checksum instead of reading them.
+        black_box(self.weights).add_to(&mut sum);
+        self.recurrence.add_to(&mut sum);
+        for neuron in black_box(self.neurons) {
+            neuron.add_to(&mut sum);
+        }
+        sum.end()
+    }
+}
+
+impl<N: Neuron, const IN: usize, const OUT: usize, I, R> Layer<'_, N, IN, OUT, I, R> {
+    fn owner(&self) -> Owner {
+        Owner(core::ptr::from_ref(self.weights).addr(), core::ptr::from_ref(self.neurons).addr())
+    }
+
+    /// Brings the state of another layer to rest, in place, and counts it.
+    #[cold]
+    #[inline(never)]
+    fn adopt(&self, state: &mut LayerState<N::Value, N::Current, OUT>) {
+        state.potentials.fill(N::Value::default());
+        state.currents.fill(N::Current::default());
+        state.spikes.clear();
+        state.rejected = state.rejected.saturating_add(1);
+        state.owner = self.owner();
     }
 }
 

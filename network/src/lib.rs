@@ -14,6 +14,7 @@
 )]
 
 mod chain;
+mod checksum;
 mod error;
 mod input;
 mod integer;

@@ -5,6 +5,7 @@
 //! potential before, `a` and `b` are the decays. Gains (`R dt / tau`, `w_in`) must be multiplied into weights and
 //! biases; a leak towards another value than 0 (`v_leak dt / tau`) must be added to the bias.
 
+use crate::checksum::Checksum;
 use crate::error::{ParameterError, unwrap};
 use crate::integer;
 use crate::number::{self, Number};
@@ -36,6 +37,9 @@ pub trait Neuron: Copy + Debug + Sealed + 'static {
     /// Clamps the current to its range; returns 1 if it was outside, or else 0.
     #[doc(hidden)]
     fn clamp(current: &mut Self::Current) -> u32;
+    /// Adds the parameters to a checksum.
+    #[doc(hidden)]
+    fn add_to(&self, sum: &mut Checksum);
 }
 
 /// A leaky neuron that fires (LIF). With a decay of 1 it is a perfect integrator (IF).
@@ -99,6 +103,13 @@ impl<V: Number, R: Reset> Neuron for Lif<V, R> {
     fn clamp((): &mut ()) -> u32 {
         0
     }
+
+    fn add_to(&self, sum: &mut Checksum) {
+        sum.add(V::word_of_factor(self.decay));
+        for number in [self.bias, self.threshold, self.reset] {
+            sum.add(number.word());
+        }
+    }
 }
 
 impl<V: Number> Neuron for Li<V> {
@@ -125,6 +136,11 @@ impl<V: Number> Neuron for Li<V> {
     #[inline(always)]
     fn clamp((): &mut ()) -> u32 {
         0
+    }
+
+    fn add_to(&self, sum: &mut Checksum) {
+        sum.add(V::word_of_factor(self.decay));
+        sum.add(self.bias.word());
     }
 }
 
@@ -154,6 +170,12 @@ impl<V: Number, N: Neuron<Value = V, Current = ()>, const OLD: bool> Neuron for 
     #[inline(always)]
     fn clamp(current: &mut V) -> u32 {
         current.clamp()
+    }
+
+    fn add_to(&self, sum: &mut Checksum) {
+        sum.add(V::word_of_factor(self.decay));
+        sum.add(self.bias.word());
+        self.neuron.add_to(sum);
     }
 }
 

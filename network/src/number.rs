@@ -1,5 +1,6 @@
 //! The number types of potentials and currents.
 
+use crate::checksum::Checksum;
 use crate::sealed::Sealed;
 use core::{fmt::Debug, hint::black_box};
 
@@ -9,7 +10,8 @@ use core::{fmt::Debug, hint::black_box};
 /// |---|---|---|
 /// | weights | `f32` | `i8`, shifted up by [`Weights`](crate::Weights)' shift |
 /// | decays | `f32`, 0 to 1 | [`u32`], 65 536 stands for 1; a product is rounded down |
-/// | values of inputs | `f32` up to ±10¹⁵ | `i16` |
+/// | values of inputs, 128 at most | `f32` up to ±10⁶ | `i16` |
+/// | spikes in a step | any number | 4096; more are [counted](crate::State::rejected) |
 /// | largest weight, bias, threshold | ±10¹⁵ | ±2²⁷ (biases, thresholds) |
 /// | largest potential, current | any finite | ±2²⁹; saturates there, and counts it |
 pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
@@ -51,6 +53,15 @@ pub trait Number: Copy + Default + PartialOrd + Debug + Sealed + 'static {
     /// Returns the value, or `None` if it is not finite or out of range.
     #[doc(hidden)]
     fn accept(value: Self::Value) -> Option<Self::Value>;
+    /// Returns the bits, for a checksum.
+    #[doc(hidden)]
+    fn word(self) -> u32;
+    /// Returns the bits of a decay, for a checksum: the same on every core.
+    #[doc(hidden)]
+    fn word_of_factor(factor: Self::Factor) -> u32;
+    /// Adds rows of weights and their scale to a checksum.
+    #[doc(hidden)]
+    fn add_rows<const OUT: usize>(rows: &[Self::Row<OUT>], scale: Self::Scale, sum: &mut Checksum);
     /// Adds the weights of two lists of rows, in the order of the lists, to the sums of `W` groups of four neurons;
     /// `first` is the first group. The sums start from `start`. The lists have the same scale, and together at most
     /// [`MOST_ROWS`](Self::MOST_ROWS) rows.
@@ -88,9 +99,13 @@ pub(crate) const IS_SMALL: bool = !cfg!(target_has_atomic = "ptr") || cfg!(witho
 /// Largest result of [`Number::outside`] for a number in its range.
 pub(crate) const OUTSIDE: u32 = (1 << 30) - 1;
 
-/// Largest weight, bias, threshold, reset value and input value in `f32`. Sums and products of these stay finite, so
-/// that no potential is ever infinite or NaN.
+/// Largest weight, bias, threshold and reset value in `f32`.
 pub(crate) const LARGEST: f32 = 1e15;
+
+/// Largest value of an input in `f32`. No potential is ever infinite or NaN, however many steps are run: a step adds at
+/// most 128 products of a value and a weight, 1.3e23, to a current. A current that is 2²⁵ times as large rounds the sum
+/// to itself, and so does the potential, 2²⁵ times as large as the current: 1.5e38.
+pub(crate) const LARGEST_VALUE: f32 = 1e6;
 
 impl Sealed for f32 {}
 
@@ -130,7 +145,21 @@ impl Number for f32 {
 
     #[inline(always)]
     fn accept(value: Self) -> Option<Self> {
-        (value.abs() <= LARGEST).then_some(value)
+        (value.abs() <= LARGEST_VALUE).then_some(value)
+    }
+
+    fn word(self) -> u32 {
+        self.to_bits()
+    }
+
+    fn word_of_factor(factor: Self) -> u32 {
+        factor.to_bits()
+    }
+
+    fn add_rows<const OUT: usize>(rows: &[[Self; OUT]], (): (), sum: &mut Checksum) {
+        for weight in rows.as_flattened() {
+            sum.add(weight.to_bits());
+        }
     }
 
     #[inline(always)]
@@ -186,4 +215,19 @@ impl Number for f32 {
 #[inline(always)]
 pub(crate) fn block<T, const W: usize>(row: &[T], first: usize) -> Option<&[[T; 4]; W]> {
     row.as_chunks().0.get(first..)?.first_chunk()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LARGEST, LARGEST_VALUE};
+
+    /// No number of steps brings a current or potential to infinity: from some size on, a sum is rounded to what it was.
+    #[test]
+    fn sums_end_before_infinity() {
+        let step = 128.0 * LARGEST * LARGEST_VALUE;
+        let current = step * (1 << 25) as f32;
+        let potential = current * (1 << 25) as f32;
+        assert_eq!((current + step, potential + current), (current, potential));
+        assert!(potential.is_finite());
+    }
 }

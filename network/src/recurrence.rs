@@ -1,11 +1,12 @@
 //! The recurrence of a layer: how its spikes act on it in the next step.
 
+use crate::checksum::Checksum;
 use crate::input::Fired;
 use crate::number::Number;
 use crate::sealed::Sealed;
 use crate::spikes::Spikes;
 use crate::weights::Weights;
-use core::fmt::Debug;
+use core::{fmt::Debug, hint::black_box};
 
 /// The weights by which a layer's spikes act on its neurons in the next step.
 pub trait Recurrence<V: Number, const OUT: usize>: Copy + Debug + Sealed {
@@ -26,6 +27,10 @@ pub trait Recurrence<V: Number, const OUT: usize>: Copy + Debug + Sealed {
     #[doc(hidden)]
     #[inline(always)]
     fn add_own(&self, _before: &Self::Before<'_>, _neuron: usize, _sum: &mut V) {}
+
+    /// Adds the weights to a checksum.
+    #[doc(hidden)]
+    fn add_to(&self, _sum: &mut Checksum) {}
 
     /// Whether `add_own` has an effect.
     #[doc(hidden)]
@@ -80,6 +85,10 @@ impl<V: Number, const OUT: usize> Recurrence<V, OUT> for Full<'_, V, OUT> {
     ) -> (&'c [&'c V::Row<OUT>], V::Scale) {
         (before.rows(), self.0.scale)
     }
+
+    fn add_to(&self, sum: &mut Checksum) {
+        black_box(self.0).add_to(sum);
+    }
 }
 
 impl<V: Number, const OUT: usize> Recurrence<V, OUT> for OneToOne<'_, V, OUT> {
@@ -99,6 +108,10 @@ impl<V: Number, const OUT: usize> Recurrence<V, OUT> for OneToOne<'_, V, OUT> {
     #[inline(always)]
     fn fired<'c>(&'c self, _before: &'c Spikes<OUT>) -> (&'c [&'c V::Row<OUT>], V::Scale) {
         (&[], self.0.scale)
+    }
+
+    fn add_to(&self, sum: &mut Checksum) {
+        black_box(self.0).add_to(sum);
     }
 
     #[inline(always)]

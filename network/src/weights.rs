@@ -1,5 +1,6 @@
 //! Weights in flash.
 
+use crate::checksum::Checksum;
 use crate::error::{ParameterError, unwrap};
 use crate::integer::{self, Packed};
 use crate::number::{LARGEST, Number};
@@ -13,6 +14,12 @@ use crate::number::{LARGEST, Number};
 pub struct Weights<V: Number, const IN: usize, const OUT: usize> {
     pub(crate) rows: [V::Row<OUT>; IN],
     pub(crate) scale: V::Scale,
+}
+
+impl<V: Number, const IN: usize, const OUT: usize> Weights<V, IN, OUT> {
+    pub(crate) fn add_to(&self, sum: &mut Checksum) {
+        V::add_rows(&self.rows, self.scale, sum);
+    }
 }
 
 impl<const IN: usize, const OUT: usize> Weights<f32, IN, OUT> {
@@ -49,7 +56,7 @@ impl<const IN: usize, const OUT: usize> Weights<f32, IN, OUT> {
 }
 
 impl<const IN: usize, const OUT: usize> Weights<i32, IN, OUT> {
-    /// Makes 8-bit weights from rows by input. A sum of weights is multiplied by 2 to the power of `shift`, 0 to 10,
+    /// Makes 8-bit weights from rows of up to 4096 inputs. A sum of weights is multiplied by 2 to the power of `shift`, 0 to 10,
     /// before it is added to a potential, so that potentials are finer than weights. A sum of weights times values is
     /// divided by it instead.
     ///
@@ -57,6 +64,12 @@ impl<const IN: usize, const OUT: usize> Weights<i32, IN, OUT> {
     /// Panics if the shift is above 10; at compile time where it initialises a constant.
     #[expect(clippy::indexing_slicing, reason = "below the arrays' lengths")]
     pub const fn packed(rows: &[[i8; OUT]; IN], shift: u32) -> Self {
+        const {
+            assert!(
+                IN <= <i32 as Number>::MOST_SPIKES,
+                "8-bit weights have 4096 inputs at most, so that sums of them fit 32 bits"
+            );
+        };
         assert!(shift <= integer::MOST_SHIFT, "a shift is 10 at most");
         let mut packed = [Packed::new(&[0; OUT]); IN];
         let mut row = 0;

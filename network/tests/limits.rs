@@ -6,8 +6,10 @@ use spikewire_network::{
     Cuba, Layer, Li, Lif, Network, State, Subtract, ToValue, ToValueHeld, ToValueLate, Weights,
 };
 
-/// The largest weight, bias, threshold, reset value and input value in `f32`.
+/// The largest weight, bias, threshold and reset value in `f32`.
 const LARGEST: f32 = 1e15;
+/// The largest value of an input in `f32`.
+const LARGEST_VALUE: f32 = 1e6;
 
 #[test]
 fn floats_reach_their_bound_and_no_further() {
@@ -21,7 +23,10 @@ fn floats_reach_their_bound_and_no_further() {
         let neuron = Lif::<f32, ToValue>::new(0.5, 1.0);
         assert!(neuron.try_with_bias(end).is_ok());
         assert_eq!(neuron.try_with_bias(beyond).unwrap_err().max, LARGEST);
+    }
+    for end in [LARGEST_VALUE, -LARGEST_VALUE] {
         // A value at the bound counts, and one beyond it is left out.
+        let beyond = if end > 0.0 { end.next_up() } else { end.next_down() };
         let weights = Weights::<f32, 1, 1>::new(&[[1.0]]);
         let neurons = [Li::<f32>::new(0.0)];
         let layer = Layer::new(&weights, &neurons).of_values();

@@ -11,10 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from . import _native, _progress
+from ._errors import checked
 from ._flight import Flight
 from ._scheme import Scheme
 
 
+@checked
 def dataset(
     paths: str | Path | Sequence[str | Path],
     flight: str | Path | Scheme,

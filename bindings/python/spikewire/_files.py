@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._arrays import Number
+from ._arrays import read as as_array
 from ._bank import EVENTS
 from ._errors import Error, Unknown, checked
 from ._times import ticks
@@ -137,8 +138,9 @@ def read_events(source: str | Path | bytes | bytearray | memoryview, format: str
 
 
 @checked
-def write_events(events: NDArray[Any], format: str, path: str | Path | None = None) -> bytes:
-    """Events, a structured array with ``t``, ``x`` and ``p``, as ``bytes`` of a format, and in a file if `path` is given.
+def write_events(events: Any, format: str, path: str | Path | None = None) -> bytes:
+    """Events, a structured array or a table with ``t``, ``x`` and ``p``, as ``bytes`` of a format, and in a file if `path` is
+    given.
 
     With ``y``, as ``tonic`` and ``expelliarmus`` have it, they are a camera's events, for ``"es"``, ``"evt2"``, ``"evt3"``
     and ``"csv"``; ``"evt3,width=640,height=480"`` is the size of its picture, if the events do not reach the last pixel.
@@ -151,15 +153,20 @@ def write_events(events: NDArray[Any], format: str, path: str | Path | None = No
     >>> bool((sw.read_events(data, "es") == events).all())
     True
     """
-    addresses = np.asarray(events["x"])
-    if len(addresses) and not (0 <= addresses.min() and addresses.max() < 1 << 16):
-        raise Error(f"addresses must be 0 to 65535, but are {addresses.min()} to {addresses.max()}")
-    rows = np.asarray(events["y"]) if "y" in (events.dtype.names or ()) else None
-    if rows is not None:
-        if len(rows) and not (0 <= rows.min() and rows.max() < 1 << 16):
-            raise Error(f"rows must be 0 to 65535, but are {rows.min()} to {rows.max()}")
-        rows = rows.astype(np.uint16)
-    data, _ = _native.write_events(ticks(events["t"]), addresses.astype(np.uint16), rows, np.asarray(events["p"]) > 0, format)
+    fields = events if getattr(events, "dtype", None) is None else events.dtype.names
+    rows = _places(events["y"], "rows") if "y" in fields else None
+    are_up = as_array(events["p"]).array > 0
+    data, _ = _native.write_events(ticks(events["t"]), _places(events["x"], "addresses"), rows, are_up, format)
     if path is not None:
         Path(path).write_bytes(data)
     return data
+
+
+def _places(values: Any, name: str) -> NDArray[np.uint16]:
+    """Addresses, or rows of a picture, in the 16 bits that formats have for them."""
+    values = as_array(values).array
+    if values.dtype.kind not in "iuf" or (values != np.trunc(values)).any():
+        raise Error(f"{name} must be whole numbers")
+    if len(values) and not (0 <= values.min() and values.max() < 1 << 16):
+        raise Error(f"{name} must be 0 to 65535, but are {values.min()} to {values.max()}")
+    return values.astype(np.uint16)

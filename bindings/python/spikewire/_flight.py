@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ class Flight:
 
     Both ends are made from it, so that they cannot disagree on a threshold, and their frames carry :attr:`fingerprint`, as
     those of a firmware from the same file do. Samples and values are in counts: :attr:`counts` times the unit. A bad file
-    is a :class:`spikewire.Error` with its line.
+    is a :class:`spikewire.Error` with its line. Warns of each parameter that the sample type changes.
 
     >>> import pathlib, tempfile, numpy as np, spikewire as sw
     >>> text = 'version = 1\\nscheme = "sf"\\nperiod = 2000\\nparameters = { threshold = 0.1 }\\n'
@@ -42,7 +43,9 @@ class Flight:
         from ._schemes import schemes
 
         told = _native.flight(os.fspath(path))
-        scheme, sample, period, keyframe_every, clock_ppm, label, fingerprint, filtered, channels = told
+        scheme, sample, period, keyframe_every, clock_ppm, label, fingerprint, filtered, channels, rounded = told
+        for change in rounded:
+            warnings.warn(change, stacklevel=2)
         #: The short name of the scheme of every channel.
         self.scheme: str = scheme
         #: Names of the channels, in the order of a sample.
@@ -53,7 +56,7 @@ class Flight:
         self.units: list[str] = [own[2] for own in channels]
         #: Counts for one unit of each channel.
         self.counts: NDArray[Any] = np.array([own[3] for own in channels])
-        #: The scheme of each channel.
+        #: The scheme of each channel, with the parameters that the sample type has.
         self.schemes: list[Scheme] = [schemes[scheme]._of(dict(own[4]), sample) for own in channels]
         #: The time from sample to sample in µs.
         self.period: int = period
@@ -69,11 +72,11 @@ class Flight:
         self.filter: Filter | None = _filter(filtered, 1e6 / period)
 
     def sender(self, session: int = 0) -> Sender:
-        """The bank and the frames of its events, for six channels; `session` differs at each start."""
+        """The bank and the frames of its events; `session` differs at each start."""
         return Sender(self.schemes, self.period, self.keyframe_every, session, self.filter, self.label)
 
     def receiver(self) -> Receiver:
-        """The decoders, for six channels."""
+        """The decoders."""
         return Receiver(self.schemes, self.period, self.clock_ppm / 1e6, self.filter, self.label)
 
     def __repr__(self) -> str:

@@ -208,8 +208,8 @@ def advise(
     one with the fewest bytes a second on the link is advised. `loop_bandwidth` is the frequency in Hz up to which the
     control loop acts that is to fly on it: codes that are late for it, or that fall behind the signal, are not advised, nor
     those that a simulated drone did not fly on well with `frame_loss` percent of its frames lost, 1 unless given.
-    Without `max_rmse`, a channel whose `name` is that of an inertial sensor in rad/s or m/s², such as ``gyro_x``, then has at
-    most the error of the parameters that flew.
+    Without `max_rmse`, a channel whose `name` is that of an inertial sensor's axis, such as ``gyro_x`` in rad/s or
+    ``accel_z_g``, then has the parameters that flew, or finer ones.
 
     >>> import numpy as np, spikewire as sw
     >>> x = np.sin(np.linspace(0, 60, 2000))

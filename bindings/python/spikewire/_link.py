@@ -1,7 +1,8 @@
-"""A bank of six channels at one end of a link, and its decoders at the other: the frames that fly."""
+"""A bank of channels at one end of a link, and its decoders at the other: the frames that fly."""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,10 +17,11 @@ from ._scheme import Scheme
 
 
 class Sender:
-    """The encoders of an inertial sensor's six channels, and the frames of their events.
+    """The encoders of a bank's channels, and the frames of their events.
 
-    `schemes` are one scheme for all channels, or one for each, of one kind and with as many neurons. A sample is taken
-    every `period` µs. After the first and every `keyframe_every` samples comes a keyframe, or a heartbeat of codes without.
+    `schemes` are one scheme for all `channels`, six unless given, as an inertial sensor has; or a list of one for each
+    channel, of one kind and with as many neurons. A bank has 1 to 64 channels. A sample is taken every `period` µs. After
+    the first and every `keyframe_every` samples comes a keyframe, or a heartbeat of codes without.
     `filter` is one before the code of all channels, or one for each, or None. `label` is a text that both ends must share,
     such as names and units of the channels. The bytes are those of a firmware with the same schemes, filters, `period`,
     `label` and `session`. It pickles before its first sample.
@@ -44,9 +46,11 @@ class Sender:
         session: Whole = 0,
         filter: Filter | Sequence[Filter | None] | None = None,
         label: str | None = None,
+        channels: Whole | None = None,
     ):
-        self._made_of = schemes, period, keyframe_every, session, filter, label
-        coders, filters = _six(schemes), _filters(filter)
+        self._made_of = schemes, period, keyframe_every, session, filter, label, channels
+        coders = _coders(schemes, channels)
+        filters = _filters(filter, len(coders))
         self._native = _native.Sender(coders, filters, period, keyframe_every, session, label)
         self._sample = schemes[0].sample if isinstance(schemes, Sequence) else schemes.sample
         # Behind a filter, a sample may be in the range again.
@@ -58,7 +62,7 @@ class Sender:
 
     @checked
     def encode(self, sample: ArrayLike) -> list[bytes]:
-        """The frames that a sample of the six channels makes: none, if nothing fired and no keyframe is due.
+        """The frames that a sample of all channels makes: none, if nothing fired and no keyframe is due.
 
         >>> import spikewire as sw
         >>> sender = sw.Sender(sw.StepForward(threshold=0.1), period=2000)
@@ -81,7 +85,7 @@ class Sender:
 class Receiver:
     """The decoders of a :class:`Sender`, which know whether their values are exact.
 
-    `schemes`, `filter` and `label` are those of the sender, whose frames carry their fingerprint: from others no value is
+    `schemes`, `filter`, `label` and `channels` are those of the sender, whose frames carry their fingerprint: from others no value is
     exact.
     `clock_tolerance` is by how much the time from sample to sample may differ from `period`, as a fraction. A bank whose
     samples are taken by a timer of the clock that its ticks come from has 0. Codes with sub-timesteps need to know it, or
@@ -104,14 +108,20 @@ class Receiver:
         clock_tolerance: Number = 0.02,
         filter: Filter | Sequence[Filter | None] | None = None,
         label: str | None = None,
+        channels: Whole | None = None,
     ):
-        self._made_of = schemes, period, clock_tolerance, filter, label
-        self._has_begun = False
-        self._native = _native.Hearer(_six(schemes), _filters(filter), period, clock_tolerance, label)
+        self._made_of = schemes, period, clock_tolerance, filter, label, channels
+        self._has_begun = self._has_warned = False
+        coders = _coders(schemes, channels)
+        filters = _filters(filter, len(coders))
+        self._native = _native.Hearer(coders, filters, period, clock_tolerance, label)
 
     @checked
     def hear(self, data: bytes | bytearray | memoryview) -> None:
         """Takes the next bytes of the link, cut anywhere: frames that were lost are noticed.
+
+        Warns once if frames of two senders come in turn, as from two boards on one line: one of them is decoded, and the
+        frames of the other are left out as :attr:`late`.
 
         >>> import spikewire as sw
         >>> sender = sw.Sender(sw.StepForward(threshold=0.1), period=2000)
@@ -121,7 +131,11 @@ class Receiver:
         (None, None, 9.8)
         """
         self._has_begun = True
-        self._native.hear(data if isinstance(data, bytes) else bytes(memoryview(data)))
+        data = data if isinstance(data, bytes) else bytes(memoryview(data))
+        if self._native.hear(data) and not self._has_warned:
+            self._has_warned = True
+            what = "frames of two sessions come in turn: are there two senders on the line?"
+            warnings.warn(what, stacklevel=3)
 
     @checked
     def advance(self, now: Whole) -> None:
@@ -163,6 +177,11 @@ class Receiver:
         """How many frames were lost, as far as later ones tell."""
         return self._native.lost()
 
+    @property
+    def late(self) -> int:
+        """How many frames came after later ones, or from another sender, and were left out."""
+        return self._native.late()
+
 
 def _again(end: Sender | Receiver) -> Any:
     """What an end is made of."""
@@ -172,11 +191,14 @@ def _again(end: Sender | Receiver) -> Any:
     return type(end), end._made_of
 
 
-def _filters(filter: Filter | Sequence[Filter | None] | None) -> list[Any]:
-    own = list(filter) if isinstance(filter, Sequence) else [filter] * 6
+def _filters(filter: Filter | Sequence[Filter | None] | None, channels: int) -> list[Any]:
+    own = list(filter) if isinstance(filter, Sequence) else [filter] * channels
     return [one and one._native for one in own]
 
 
-def _six(schemes: Scheme | Sequence[Scheme]) -> list[Any]:
-    own = list(schemes) if isinstance(schemes, Sequence) else [schemes] * 6
-    return [scheme._coder for scheme in own]
+def _coders(schemes: Scheme | Sequence[Scheme], channels: Whole | None) -> list[Any]:
+    if not isinstance(schemes, Sequence):
+        return [schemes._coder] * (6 if channels is None else int(channels))
+    if channels is not None and channels != len(schemes):
+        raise Error(f"there are {len(schemes)} schemes for {channels} channels")
+    return [scheme._coder for scheme in schemes]

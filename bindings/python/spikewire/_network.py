@@ -83,6 +83,7 @@ class Network:
         return cls(_native.Network(Path(path), (framework, fires, decay, current), resets, dt))
 
     @classmethod
+    @checked
     def from_toml(cls, text: str) -> Network:
         """Reads what :meth:`to_toml` wrote.
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from . import _scheme as _base
+from ._errors import checked
 
 
 class ToSpikes:
@@ -14,7 +15,8 @@ class ToSpikes:
 
     `axis` is the one of time: 0 for (time, channels), as tonic and snnTorch lay out data, and the last one or the rows of
     a table unless given. The spikes are an array
-    of `dtype`, or a tensor if the samples are one of torch; that array and tensor share their memory.
+    of `dtype`, or a tensor if the samples are one of torch; that array and tensor share their memory. `dtype` may be one of
+    torch, such as ``torch.bfloat16``: then they are a tensor of it.
 
     >>> import numpy as np, spikewire as sw
     >>> transform = sw.ToSpikes(sw.StepForward(threshold=0.5), axis=0)
@@ -24,18 +26,23 @@ class ToSpikes:
            [ 0,  0]], dtype=int8)
     """
 
+    @checked
     def __init__(self, scheme: _base.Scheme, axis: int | None = None, dtype: Any = np.int8):
         self.scheme: _base.Scheme = scheme
         self.axis: int | None = axis
-        self.dtype: np.dtype[Any] = np.dtype(dtype)
+        #: Type of the spikes, of NumPy or of torch.
+        self.dtype: Any = dtype if type(dtype).__module__ == "torch" else np.dtype(dtype)
 
     def __call__(self, x: Any) -> Any:
-        spikes = self.scheme.encode(x, progress=False, axis=self.axis).array.astype(self.dtype, copy=False)
-        if not hasattr(x, "detach"):
-            return spikes
+        spikes = self.scheme.encode(x, progress=False, axis=self.axis).array
+        if isinstance(self.dtype, np.dtype):
+            spikes = spikes.astype(self.dtype, copy=False)
+            if not hasattr(x, "detach"):
+                return spikes
         import torch
 
-        return torch.from_numpy(spikes)
+        tensor = torch.from_numpy(spikes)
+        return tensor if isinstance(self.dtype, np.dtype) else tensor.to(self.dtype)
 
     def __repr__(self) -> str:
-        return f"ToSpikes({self.scheme!r}, axis={self.axis}, dtype={self.dtype.name!r})"
+        return f"ToSpikes({self.scheme!r}, axis={self.axis}, dtype={getattr(self.dtype, 'name', self.dtype)!r})"

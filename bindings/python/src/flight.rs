@@ -13,9 +13,9 @@ type Heard = (String, String, String, f64, Vec<(&'static str, Given)>);
 type Filtering = (&'static str, f32, Option<f32>);
 
 /// A flight: scheme, sample type, period in µs, samples from keyframe to keyframe, error of the clock in millionths, label,
-/// fingerprint, filter, channels.
+/// fingerprint, filter, channels, parameters that the sample type changes.
 type FlightFields =
-    (&'static str, String, u16, u32, u32, String, u32, Option<Filtering>, Vec<Heard>);
+    (&'static str, String, u16, u32, u32, String, u32, Option<Filtering>, Vec<Heard>, Vec<String>);
 
 /// Reads a flight's file.
 #[pyfunction]
@@ -26,9 +26,9 @@ pub(crate) fn flight(path: &str) -> PyResult<FlightFields> {
         Filter::LowPass { corner } => ("low_pass", corner, None),
         Filter::Notch { centre, q } => ("notch", centre, Some(q)),
     });
-    let channels = flight.channels.iter().map(|own| {
+    let channels = flight.channels.iter().enumerate().map(|(index, own)| {
         let Channel { name, source, unit, counts, .. } = own.clone();
-        (name, source, unit, counts, keywords(&flight.asked(own)))
+        (name, source, unit, counts, keywords(&flight.asked_as_flown(index)))
     });
     Ok((
         flight.scheme.name,
@@ -40,5 +40,6 @@ pub(crate) fn flight(path: &str) -> PyResult<FlightFields> {
         flight.fingerprint().bits(),
         filter,
         channels.collect(),
+        flight.rounded().iter().map(ToString::to_string).collect(),
     ))
 }

@@ -1,4 +1,4 @@
-//! A bank of six channels, those of an inertial sensor, at one end of a link, and its decoders at the other.
+//! A bank of channels at one end of a link, and its decoders at the other.
 
 use std::any::Any;
 use std::sync::{Mutex, PoisonError};
@@ -6,28 +6,33 @@ use std::sync::{Mutex, PoisonError};
 use anyhow::{Result, anyhow, bail};
 use catalogue::for_sample_type;
 use catalogue::run::{RunTime, Runs, SampleType, Settings, Visit};
+use lab::events::LinkTally;
+use lab::values::with_kind;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use spikewire::link::{
     CLOCK_TOLERANCE, Coding, MAX_FRAME, Reader, Received, Receiver, Session, Transmitter,
     longest_slot,
 };
-use spikewire::{Bank, Fingerprint, FromItems, Item, Recovery, Sample, Scheme, Spike, Tick};
+use spikewire::{
+    Bank, Fingerprint, FromItems, Item, Keyframe, Recovery, Sample, SampleKind, Scheme, Spike, Tick,
+};
 
 use crate::coder::Coder;
 use crate::error::value;
 use crate::filter::{Chain, Filter};
 
-/// The channels of an inertial sensor.
-const CHANNELS: usize = 6;
+/// The most channels of a bank, as of a flight file. Banks and receivers have as many, because their number is a part of
+/// their type: those behind the last channel encode what the last one encodes, and nothing of them is sent.
+const CHANNELS: usize = 64;
 
 /// The most events of one sample, over all channels.
-const EVENTS: usize = 1 << 12;
+const EVENTS: usize = 1 << 14;
 
 /// The sender's half: a bank.
 trait Near: Send {
     /// Encodes a sample of every channel.
-    fn encode(&mut self, tick: Tick, samples: [f64; CHANNELS], items: &mut Vec<Item>);
+    fn encode(&mut self, tick: Tick, samples: &[f64], items: &mut Vec<Item>);
 
     /// Adds the keyframes or the heartbeat after the sample of this tick.
     fn keyframe(&self, tick: Tick, items: &mut Vec<Item>);
@@ -42,67 +47,92 @@ trait Far: Send {
     fn advance(&mut self, now: Tick);
 
     /// The value of each channel, and whether it is exact.
-    fn values(&self) -> [(f64, bool); CHANNELS];
+    fn values(&self) -> (Vec<f64>, Vec<bool>);
 
     /// Why a channel has no exact value, in words.
-    fn withheld(&self) -> [Option<String>; CHANNELS];
+    fn withheld(&self) -> Vec<Option<String>>;
 }
 
 struct NearEnd<P: Scheme + 'static> {
-    filters: [Chain<P::Sample>; CHANNELS],
+    /// The filter of each channel.
+    filters: Vec<Chain<P::Sample>>,
     bank: Bank<[&'static P; CHANNELS], CHANNELS>,
     one: f64,
+    wire: Wire,
+}
+
+/// What the items of a bank become on the link.
+#[derive(Clone, Copy)]
+struct Wire {
+    /// The first address behind those of the channels.
+    end: u16,
+    /// The sample type by which keyframes are labelled: the bank's own is one for all of a width.
+    kind: SampleKind,
 }
 
 impl<P: Scheme<EncoderState: Send> + Sync> Near for NearEnd<P> {
-    fn encode(&mut self, tick: Tick, samples: [f64; CHANNELS], items: &mut Vec<Item>) {
-        let mut filters = self.filters.iter_mut();
-        let samples = samples.map(|sample| {
-            let sample = P::Sample::from_f64(sample * self.one);
-            filters.next().map_or(sample, |filter| filter.next(sample))
-        });
-        self.bank.encode(tick, samples, |event| items.push(event.into()));
+    fn encode(&mut self, tick: Tick, samples: &[f64], items: &mut Vec<Item>) {
+        let mut filtered = Vec::with_capacity(CHANNELS);
+        for (sample, filter) in samples.iter().zip(&mut self.filters) {
+            filtered.push(filter.next(P::Sample::from_f64(sample * self.one)));
+        }
+        let last = filtered.len().saturating_sub(1);
+        let samples = std::array::from_fn(|channel| filtered[channel.min(last)]);
+        self.bank.encode_into(tick, samples, Items { list: items, wire: self.wire });
     }
 
     fn keyframe(&self, tick: Tick, items: &mut Vec<Item>) {
-        self.bank.keyframe_into(tick, Items(items));
+        self.bank.keyframe_into(tick, Items { list: items, wire: self.wire });
     }
 }
 
 /// A list as the end of a queue.
-struct Items<'a>(&'a mut Vec<Item>);
+struct Items<'a> {
+    list: &'a mut Vec<Item>,
+    wire: Wire,
+}
 
 impl spikewire::Put for Items<'_> {
     fn put(&mut self, item: Item) {
-        self.0.push(item);
+        let Wire { end, kind } = self.wire;
+        match item {
+            Item::Event(event) if event.address >= end => {}
+            Item::Keyframe(keyframe) if keyframe.address >= end => {}
+            Item::Keyframe(keyframe) => {
+                self.list.push(Item::Keyframe(Keyframe { kind, ..keyframe }));
+            }
+            item => self.list.push(item),
+        }
     }
 }
 
 struct FarEnd<P: Scheme + 'static, const EVENTS: usize> {
     receiver: Receiver<[&'static P; CHANNELS], CHANNELS, EVENTS>,
+    channels: u16,
     one: f64,
+    /// The sender's sample type.
+    kind: SampleKind,
 }
 
 impl<P: Scheme<DecoderState: Send> + Sync, const EVENTS: usize> Far for FarEnd<P, EVENTS> {
     fn hear(&mut self, received: &Received<'_>) {
-        self.receiver.apply(received, |_, _, _| ());
+        let received = with_kind(received, self.kind, <P::Sample as Sample>::KIND);
+        self.receiver.apply(&received, |_, _, _| ());
     }
 
     fn advance(&mut self, now: Tick) {
         self.receiver.advance(now, |_, _, _| ());
     }
 
-    fn values(&self) -> [(f64, bool); CHANNELS] {
-        std::array::from_fn(|channel| {
-            let value = self.receiver.estimate(channel as u16).to_f64() / self.one;
-            (value, self.receiver.exact(channel as u16).is_some())
-        })
+    fn values(&self) -> (Vec<f64>, Vec<bool>) {
+        let value = |channel| self.receiver.estimate(channel).to_f64() / self.one;
+        let is_exact = |channel| self.receiver.exact(channel).is_some();
+        ((0..self.channels).map(value).collect(), (0..self.channels).map(is_exact).collect())
     }
 
-    fn withheld(&self) -> [Option<String>; CHANNELS] {
-        std::array::from_fn(|channel| {
-            self.receiver.withheld(channel as u16).map(|why| why.to_string())
-        })
+    fn withheld(&self) -> Vec<Option<String>> {
+        let why = |channel| self.receiver.withheld(channel).map(|why| why.to_string());
+        (0..self.channels).map(why).collect()
     }
 }
 
@@ -117,7 +147,7 @@ struct Ends {
 /// Builds both ends from the settings of each channel.
 struct Build<'a> {
     scheme: &'static dyn RunTime,
-    settings: &'a [Settings; CHANNELS],
+    settings: &'a [Settings],
     sample: SampleType,
     link: &'a Link,
     /// In millionths.
@@ -166,11 +196,8 @@ impl Build<'_> {
             // bytes that are not given back.
             channels.push((&*Box::leak(Box::new(scheme)), state));
         }
+        let count = channels.len();
         let schemes: Vec<&'static P> = channels.iter().map(|(scheme, _)| *scheme).collect();
-        let six = || anyhow!("there are {CHANNELS} channels");
-        let schemes: [&'static P; CHANNELS] = schemes.try_into().map_err(|_| six())?;
-        let channels: [(&'static P, P::EncoderState); CHANNELS] =
-            channels.try_into().map_err(|_| six())?;
         let neurons = schemes[0].neurons();
         if schemes.iter().any(|own| own.neurons() != neurons) {
             bail!("the channels of a bank have the same number of neurons");
@@ -189,25 +216,33 @@ impl Build<'_> {
             );
         }
         let jitter = if is_slotted { slot_ticks.ilog2() as u8 + 2 } else { 0 };
-        let coding = Coding::for_channels((CHANNELS * neurons) as u16, (*period).into());
+        let end = (count * neurons) as u16;
+        let coding = Coding::for_channels(end, (*period).into());
         let one = sample.one();
         let built = |own: &Option<Filter>| own.as_ref().map_or(Ok(Chain::none()), Filter::build);
         let filters = filters.iter().map(built).collect::<Result<Vec<_>>>()?;
-        let filters: [Chain<S>; CHANNELS] = filters.try_into().map_err(|_| six())?;
-        let fingerprints: [Fingerprint; CHANNELS] =
-            std::array::from_fn(|own| filters[own].before(schemes[own].fingerprint()));
-        let bank = Bank::per_channel_with_states(channels).with_slot_ticks(slot_ticks);
-        let mut fingerprint = Fingerprint::of_bank(sample.into(), 0, slot_ticks, &fingerprints);
+        if filters.len() != count {
+            bail!("there are {} filters for {count} channels", filters.len());
+        }
+        let pairs = filters.iter().zip(&schemes);
+        let fingerprints: Vec<Fingerprint> =
+            pairs.map(|(filter, scheme)| filter.before(scheme.fingerprint())).collect();
+        let last = count - 1;
+        let started = std::array::from_fn(|channel: usize| channels[channel.min(last)].clone());
+        let bank = Bank::per_channel_with_states(started).with_slot_ticks(slot_ticks);
+        let kind = sample.into();
+        let mut fingerprint = Fingerprint::of_bank(kind, 0, slot_ticks, &fingerprints);
         if let Some(label) = label {
             fingerprint = fingerprint.labelled(label);
         }
+        let schemes = std::array::from_fn(|channel: usize| schemes[channel.min(last)]);
         let receiver = Receiver::<_, CHANNELS, EVENTS>::per_channel(schemes)
             .with_slot_ticks(slot_ticks)
             .with_fingerprint(fingerprint)
             .with_clock_tolerance(clock_tolerance);
         Ok(Ends {
-            near: Box::new(NearEnd { filters, bank, one }),
-            far: Box::new(FarEnd { receiver, one }),
+            near: Box::new(NearEnd { filters, bank, one, wire: Wire { end, kind } }),
+            far: Box::new(FarEnd { receiver, channels: count as u16, one, kind }),
             coding: coding.with_jitter_bits(jitter),
             fingerprint,
         })
@@ -231,10 +266,10 @@ impl<S: Sample> Visit<S> for Boxed {
 
 /// Both ends of a link whose channels have these schemes, which are of one kind.
 fn ends(coders: &[Coder], link: &Link, clock_tolerance: u32) -> Result<Ends> {
-    let [first, ..] = coders else { bail!("a bank has {CHANNELS} channels, not 0") };
-    if coders.len() != CHANNELS {
-        bail!("a bank has {CHANNELS} channels, not {}", coders.len());
-    }
+    let first = match coders {
+        [first, ..] if coders.len() <= CHANNELS => first,
+        _ => bail!("a bank has 1 to {CHANNELS} channels, not {}", coders.len()),
+    };
     let is_other = |own: &Coder| {
         own.scheme.info().name != first.scheme.info().name || own.sample != first.sample
     };
@@ -249,7 +284,7 @@ fn ends(coders: &[Coder], link: &Link, clock_tolerance: u32) -> Result<Ends> {
         let past = vec![0.0; coder.looks_back()];
         settings.push(coder.settle(&past, None)?.with_stream(stream));
     }
-    let settings = &settings.try_into().map_err(|_| anyhow!("there are {CHANNELS} channels"))?;
+    let settings = &settings[..];
     let (scheme, sample) = (first.scheme, first.sample);
     let build = Build { scheme, settings, sample, link, clock_tolerance };
     for_sample_type!(sample, S => catalogue::visit::<S, _>(scheme.info().name, &settings[0], build))?
@@ -264,6 +299,7 @@ pub(crate) struct Sender(Mutex<Sending>);
 
 struct Sending {
     near: Box<dyn Near>,
+    channels: usize,
     transmitter: Transmitter,
     period: u64,
     keyframe_every: u64,
@@ -288,6 +324,7 @@ impl Sender {
         let transmitter = Transmitter::new(coding, session).with_fingerprint(fingerprint);
         Ok(Self(Mutex::new(Sending {
             near,
+            channels: coders.len(),
             transmitter,
             period: period.into(),
             keyframe_every: keyframe_every.max(1),
@@ -297,13 +334,19 @@ impl Sender {
     }
 
     /// Encodes a sample of each channel.
-    fn encode<'py>(&self, py: Python<'py>, samples: [f64; CHANNELS]) -> PyResult<Sent<'py>> {
+    fn encode<'py>(&self, py: Python<'py>, samples: Vec<f64>) -> PyResult<Sent<'py>> {
         let mut own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let Sending { near, transmitter, period, keyframe_every, samples: count, items } =
+        let Sending { near, channels, transmitter, period, keyframe_every, samples: count, items } =
             &mut *own;
+        if samples.len() != *channels {
+            let values = samples.len();
+            return Err(value(anyhow!(
+                "a sample has {channels} values, one a channel, not {values}"
+            )));
+        }
         items.clear();
         let tick = Tick::from_micros(*count * *period);
-        near.encode(tick, samples, items);
+        near.encode(tick, &samples, items);
         let fired = items.iter().filter_map(|item| match item {
             Item::Event(event) => Some((event.address, event.polarity == spikewire::Polarity::Up)),
             _ => None,
@@ -355,13 +398,15 @@ impl Hearer {
         Ok(Self(Mutex::new(Hearing { far, reader: Reader::new() })))
     }
 
-    /// Takes the next bytes of the link, cut anywhere.
-    fn hear(&self, mut bytes: &[u8]) {
+    /// Takes the next bytes of the link, cut anywhere. Returns whether frames seem to come from two senders.
+    fn hear(&self, mut bytes: &[u8]) -> bool {
         let mut own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let Hearing { far, reader } = &mut *own;
         while let Some(received) = reader.next_frame(&mut bytes) {
             far.hear(&received);
         }
+        let (frames, late) = (reader.frames().into(), reader.late().into());
+        LinkTally { frames, late, ..LinkTally::default() }.has_two_senders()
     }
 
     /// Says that all events before this time in µs have arrived.
@@ -371,21 +416,26 @@ impl Hearer {
     }
 
     /// Why a channel has no exact value, in words.
-    fn withheld(&self) -> [Option<String>; CHANNELS] {
+    fn withheld(&self) -> Vec<Option<String>> {
         let own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         own.far.withheld()
     }
 
     /// The values of the channels, and whether each is exact.
-    fn values(&self) -> ([f64; CHANNELS], [bool; CHANNELS]) {
+    fn values(&self) -> (Vec<f64>, Vec<bool>) {
         let own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let values = own.far.values();
-        (values.map(|(value, _)| value), values.map(|(_, is_exact)| is_exact))
+        own.far.values()
     }
 
     /// How many frames were lost, as far as later ones tell.
     fn lost(&self) -> u32 {
         let own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         own.reader.lost_frames()
+    }
+
+    /// How many frames came after later ones, or from another sender, and were left out.
+    fn late(&self) -> u32 {
+        let own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        own.reader.late()
     }
 }

@@ -170,6 +170,9 @@ def test_numbers_of_16_bits_that_numpy_lacks():
     for kind in (torch.bfloat16, torch.float16):
         assert np.array_equal(STEP.encode(torch.tensor(x, dtype=kind)), STEP.encode(x))
         assert sw.ToSpikes(STEP)(torch.tensor(x, dtype=kind)).tolist() == STEP.encode(x).tolist()
+        made = sw.ToSpikes(STEP, dtype=kind)
+        for same in (made(torch.tensor(x)), made(x)):
+            assert same.dtype == kind and same.tolist() == STEP.encode(x).tolist()
         assert sw.score(torch.tensor(x, dtype=kind), STEP)["spikes"] == STEP.encode(x).count
 
 

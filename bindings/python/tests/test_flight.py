@@ -26,6 +26,7 @@ def by_hand(flight):
     return sw.Sender(bank, 1000, keyframe_every=50, session=5, filter=quiet, label=LABEL.format(1000))
 
 
+@pytest.mark.filterwarnings("ignore:.* is .* in q")
 @pytest.mark.parametrize("name", ["sod", "sf"])
 def test_both_ends_have_the_bits_of_those_by_hand(name):
     flight = sw.Flight(FLIGHTS / f"{name}.toml")
@@ -37,6 +38,69 @@ def test_both_ends_have_the_bits_of_those_by_hand(name):
         for frame in frames:
             receiver.hear(frame)
     assert receiver.exact.all() and np.abs(receiver.values - sample).max() < 0.8
+
+
+#: What the ends of each flight said in Rust and in C: frames, bytes, exact values, and the hash of all.
+FLOWN = {line.split()[0]: line for line in (FLIGHTS / "flown.txt").read_text().splitlines()}
+#: The bits of a value, and the number that they have for 1.
+BITS = {
+    "f32": ("<f4", 1),
+    "i16": ("<i2", 1),
+    "q8.8": ("<i2", 2**8),
+    "q2.14": ("<i2", 2**14),
+    "i32": ("<i4", 1),
+    "q16.16": ("<i4", 2**16),
+}
+
+
+def saw(sample, channel, counts):
+    """The saw of laptop/flight/tests/both_ends.rs and bindings/c/tests/ends.c."""
+    place = sample * (3 + 2 * channel) % 193
+    value = ((place if place < 97 else 193 - place) - 48) / 32 * counts
+    return float(int(value)) if counts > 1 else value
+
+
+def fnv(hash, data):
+    for byte in data:
+        hash = (hash ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return hash
+
+
+@pytest.mark.filterwarnings("ignore:.* is .* in q")
+@pytest.mark.parametrize("name", FLOWN)
+def test_both_ends_have_the_bits_of_rust_and_c(name):
+    flight = sw.Flight(FLIGHTS / f"{name}.toml")
+    sender, receiver = flight.sender(session=7), flight.receiver()
+    frames = []
+    for sample in range(400):
+        frames += sender.encode([saw(sample, channel, own) for channel, own in enumerate(flight.counts)])
+    data = b"".join(frames)
+    hash, exact = fnv(0xCBF29CE484222325, data), 0
+    kind, one = BITS[flight.schemes[0].sample]
+    for start in range(0, len(data), 64):
+        receiver.hear(data[start : start + 64])
+        for channel in np.flatnonzero(receiver.exact):
+            exact += 1
+            bits = np.array(receiver.values[channel] * one).astype(kind).tobytes()
+            hash = fnv(fnv(hash, int(channel).to_bytes(2, "little")), bits)
+    assert f"{name} {len(frames)} frames, {len(data)} bytes, {exact} exact values, {hash:016x}" == FLOWN[name]
+
+
+def test_a_rounded_parameter_is_told_or_refused(tmp_path):
+    path = tmp_path / "flight.toml"
+    text = 'version = 1\nscheme = "sf"\nsample = "{}"\nperiod = 2000\n[[channel]]\nname = "a"\nparameters = {{ threshold = {} }}\n'
+    path.write_text(text.format("q8.8", 0.1))
+    with pytest.warns(UserWarning, match="a: threshold 0.1 is 0.1015625 in q8.8"):
+        flight = sw.Flight(path)
+    assert "threshold=0.1015625" in repr(flight.schemes[0])
+    # A flight of one channel has both ends.
+    sender, receiver = flight.sender(), flight.receiver()
+    for frame in sender.encode([0.5]):
+        receiver.hear(frame)
+    assert receiver.exact.all() and receiver.values.tolist() == [0.5]
+    path.write_text(text.format("i16", 1.4))
+    with pytest.raises(ValueError, match=r"flight\.toml:7: channel 0: threshold 1.4 would be 1 in i16"):
+        sw.Flight(path)
 
 
 @pytest.mark.parametrize("ppm, is_exact", [(0, True), (100_000, False)])

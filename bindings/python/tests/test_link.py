@@ -86,7 +86,7 @@ def test_a_filter_before_a_bank_is_the_filter_and_then_the_bank(sample):
             near.hear(frame)
         assert whole.fired == apart.fired
         assert np.array_equal(far.values, near.values) and far.exact.all() and near.exact.all()
-    with pytest.raises(ValueError, match="6 channels"):
+    with pytest.raises(ValueError, match="3 filters for 6 channels"):
         sw.Sender(scheme, PERIOD, filter=[quiet] * 3)
     with pytest.raises(ValueError, match="corner 300 must lie in"):
         sw.Filter.low_pass(300, rate=500)
@@ -119,10 +119,47 @@ def test_other_filters_and_labels_are_other_descriptions():
             assert near is far or "fingerprint" in receiver.withheld[0]
 
 
+@pytest.mark.parametrize("sample", ["f32", "i16", "i32", "q8.8", "q2.14", "q16.16", "q1.31"])
+@pytest.mark.parametrize("channels", [1, 2, 7, 64])
+def test_banks_have_any_number_of_channels_and_any_sample_type(sample, channels):
+    of = 1000 if sample[0] == "i" else 1
+    low = sw.Filter.low_pass(40, rate=500)
+    for scheme in [
+        sw.StepForward(threshold=0.125 * of, sample=sample),
+        sw.SendOnDelta(threshold=0.0625 * of, spikes=4, sample=sample),
+        sw.Position(min=-of * 0.99, max=of * 0.99, neurons=5, sample=sample),
+    ]:
+        near = sw.Sender(scheme, PERIOD, keyframe_every=10, channels=channels, filter=low)
+        far = sw.Receiver(scheme, PERIOD, channels=channels, filter=low)
+        x = 0.9 * of * np.sin(np.arange(60)[:, None] * 0.1 + np.arange(channels))
+        for number, row in enumerate(x):
+            for frame in near.encode(row):
+                far.hear(frame)
+            far.advance((number + 1) * PERIOD)
+        assert far.values.shape == far.exact.shape == (channels,)
+        assert far.exact.all(), (scheme, far.withheld)
+        assert np.abs(far.values - x[-1]).max() < 0.7 * of
+        with pytest.raises(ValueError, match=f"a sample has {channels} values"):
+            near.encode(np.zeros(channels + 1))
+
+
+def test_two_senders_on_one_line_are_told():
+    scheme = sw.StepForward(threshold=0.1)
+    one, other = (sw.Sender(scheme, PERIOD, session=session) for session in (3, 90))
+    receiver = sw.Receiver(scheme, PERIOD)
+    with pytest.warns(UserWarning, match="are there two senders"):
+        for sample in signal(100):
+            for frames in zip(one.encode(sample), other.encode(sample)):
+                for frame in frames:
+                    receiver.hear(frame)
+    assert receiver.late > 30 and receiver.lost == 0
+
+
 def test_what_makes_no_bank_is_refused():
     sf, sod = sw.StepForward(threshold=0.1), sw.SendOnDelta(threshold=0.1, spikes=4)
     for schemes, words in [
-        ([sf] * 5, "6 channels, not 5"),
+        ([], "1 to 64 channels, not 0"),
+        ([sf] * 65, "1 to 64 channels, not 65"),
         ([sf] * 3 + [sod] * 3, "one kind of scheme"),
         (sw.Position(min=0, max=1, neurons=5, sample="f32"), None),
         ([sw.Position(min=0, max=1, neurons=n) for n in (5, 5, 5, 6, 6, 6)], "same number of neurons"),

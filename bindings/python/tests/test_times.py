@@ -66,6 +66,18 @@ def test_times_that_mean_nothing_are_refused(taken, times, words):
         taken(times)
 
 
+def test_events_come_in_tables_too():
+    pandas = pytest.importorskip("pandas")
+    events = np.array([(5, 1, 3, 1), (9, 2, 4, 0)], dtype=[("t", np.int64), ("x", np.int64), ("y", np.int64), ("p", np.int64)])
+    data = sw.write_events(events, "evt2")
+    assert data == sw.write_events(pandas.DataFrame(events), "evt2")
+    assert sw.write_events(pandas.DataFrame(events).drop(columns="y"), "evt2") == sw.write_events(events[["t", "x", "p"]], "evt2") != data
+    for name in ("x", "y"):
+        for bad in (1.5, np.nan, -1, 1 << 16):
+            with pytest.raises(sw.Error, match="addresses must be|rows must be"):
+                sw.write_events(pandas.DataFrame(events).assign(**{name: bad}), "evt2")
+
+
 def test_a_gap_that_no_format_holds_is_refused():
     with pytest.raises(sw.Error, match="2147 s lie between events 0 and 1"):
         written([0, 2**31, 2**31 + 1])

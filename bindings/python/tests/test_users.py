@@ -149,7 +149,7 @@ def test_a_mask_without_a_hole_is_no_matter(x):
     assert np.array_equal(spikes_of(np.ma.array(x)), spikes_of(x))
 
 
-def told_once(call):
+def only_warning(call):
     """The one warning of a call, which names the caller's line."""
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
@@ -160,7 +160,7 @@ def told_once(call):
 
 def test_whole_numbers_beyond_f32_are_told():
     degrees = 473_977_423 + np.cumsum(np.ones(100, np.int32))
-    words = told_once(lambda: sw.StepForward(threshold=3).encode(degrees))
+    words = only_warning(lambda: sw.StepForward(threshold=3).encode(degrees))
     assert words.startswith("f32 loses the column's own steps: they are 1 on average") and "; i32 hold" in words
     assert sw.StepForward(threshold=3, sample="i32").encode(degrees).count > 20
 
@@ -181,7 +181,7 @@ def test_whole_numbers_beyond_f32_are_told():
 def test_steps_that_the_type_loses_are_told(call, times):
     walk = np.cumsum(np.random.default_rng(1).normal(size=1000 * times))
     call = functools.partial(call, sw.StepForward(threshold=1))
-    assert "f32 loses the column's own steps" in told_once(lambda: call(walk + 1e9))
+    assert "f32 loses the column's own steps" in only_warning(lambda: call(walk + 1e9))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         call(walk), call(np.tile(walk, 50) + 300), call(walk.astype(np.float32) + np.float32(1e9))
@@ -189,8 +189,8 @@ def test_steps_that_the_type_loses_are_told(call, times):
 
 def test_the_first_channel_that_loses_its_steps_is_named():
     x = np.array([[0.0, 1.0, 0.0], [1e9, 1e9 + 1, 1e9]])
-    assert told_once(lambda: sw.StepForward(threshold=0.5).encode(x)).startswith("channel 1: f32 loses")
-    words = told_once(lambda: sw.StepForward(threshold=0.5, sample="q8.8").encode([0.0, 1e-4, 2e-4]))
+    assert only_warning(lambda: sw.StepForward(threshold=0.5).encode(x)).startswith("channel 1: f32 loses")
+    words = only_warning(lambda: sw.StepForward(threshold=0.5, sample="q8.8").encode([0.0, 1e-4, 2e-4]))
     assert words.startswith("q8.8 loses the column's own steps")
 
 
@@ -211,9 +211,9 @@ def test_samples_outside_the_range_are_told_with_their_share(scheme, kind):
     own = scheme(paper=True, min=-100, max=100)
     words = "50 of 300 samples, 16.6667 %, lie outside the code's range, min -100 to max 100"
     for x, axis in [(outside, -1), (outside.T.copy(), 0), (np.repeat(outside, 2, 1)[:, ::2], -1)]:
-        assert told_once(lambda: own.encode(x, axis=axis)).startswith(words)
+        assert only_warning(lambda: own.encode(x, axis=axis)).startswith(words)
     fitted = own.fit(inside)
-    assert told_once(lambda: fitted.encoder(3).encode(outside)).startswith(words)
+    assert only_warning(lambda: fitted.encoder(3).encode(outside)).startswith(words)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         own.encode(inside), fitted.encoder(3).encode(inside), scheme(paper=True).encode(outside)
@@ -228,11 +228,11 @@ def test_a_range_is_as_coarse_as_the_sample_type():
             own = sw.WeightedPhase(min=0.1, max=0.7, sample=sample)
             own.encode(third), own.encoder().encode(third)
         sw.WeightedPhase(min=[0, -5], max=[1, 5]).encode([[0.0, 1.0], [-5.0, 5.0]])
-    words = told_once(lambda: sw.WeightedPhase(min=[0, -5], max=[1, 5]).encode([[0.0, 1.0], [-5.0, 6.0]]))
+    words = only_warning(lambda: sw.WeightedPhase(min=[0, -5], max=[1, 5]).encode([[0.0, 1.0], [-5.0, 6.0]]))
     assert words.startswith("1 of 4 samples, 25 %, lie outside the code's range, min -5 to max 5")
     sender = sw.Sender(sw.WeightedPhase(min=-1, max=1, slots=8), period=1000)
-    assert told_once(lambda: sender.encode([0, 0, 0, 0, 0, 9.8])).startswith("1 of 6 samples")
-    assert told_once(lambda: sw.plot([0.0, 1.0, 2.0], sw.WeightedPhase(min=0, max=1))).startswith("1 of 3 samples")
+    assert only_warning(lambda: sender.encode([0, 0, 0, 0, 0, 9.8])).startswith("1 of 6 samples")
+    assert only_warning(lambda: sw.plot([0.0, 1.0, 2.0], sw.WeightedPhase(min=0, max=1))).startswith("1 of 3 samples")
     assert any("lie outside" in note for note in sw.score([0.0, 1.0, 2.0], sw.WeightedPhase(min=0, max=1))["notes"])
 
 

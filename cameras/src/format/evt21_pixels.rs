@@ -1,4 +1,4 @@
-//! EVT 2.1: the format of Prophesee's GenX320 and IMX636 cameras, with up to 32 pixels a word.
+//! EVT 2.1: the format of Prophesee's `GenX320` and IMX636 cameras, with up to 32 pixels a word.
 
 use super::EventDecoder;
 use super::evt2::{LOW_BITS, X_BITS, X_MASK};
@@ -10,7 +10,7 @@ use spikewire::{Polarity, Tick};
 /// - **Event word:** type\[63:60\] 0 (down) or 1 (up), t\[59:54\] the low 6 bits of the time, x\[53:43\], y\[42:32\], and
 ///   valid\[31:0\]: bit `n` is an event of column `x + n`. **Time word:** type\[63:60\] 8, then the upper 28 bits of the
 ///   time, \[59:32\].
-/// - **Byte order:** [`Little`](Evt21Order::Little) for the GenX320, whose files say `endianness=little`, or
+/// - **Byte order:** [`Little`](Evt21Order::Little) for the `GenX320`, whose files say `endianness=little`, or
 ///   [`Halves`](Evt21Order::Halves) for the IMX636, whose files say `endianness=legacy`.
 /// - **Resynchronisation:** at each time word; the stream must be read from the start of a word, after a file's header.
 ///

@@ -635,7 +635,7 @@ fn steps_that_contradict_themselves_or_the_network_are_refused() {
         outputs: [0, 1, 2],
     };
     let results = step_of(&bare, &[Steps { rungs: 0, lift: 2, ..SINGLE }]);
-    assert_eq!(refusal(results[0].clone()), ("lift", 2));
+    assert_eq!(refusal(results[0]), ("lift", 2));
 }
 
 #[test]

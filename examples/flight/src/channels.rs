@@ -1,6 +1,7 @@
 //! From a sensor's counts to the samples of a flight's file.
 
-use crate::{CHANNELS, Sample};
+use crate::Sample;
+use crate::names::{G, RADIANS, axis, unit};
 
 /// Size of one count of a sensor: in rad/s for the turn rates, in m/s² for the accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,15 +19,10 @@ impl Counts {
     }
 }
 
-/// rad of 1°.
-const RADIANS: f64 = core::f64::consts::PI / 180.0;
-/// m/s² of 1 g.
-const G: f64 = 9.806_65;
-
 /// The axis of the sensor that each channel of a flight takes, and its samples for a count.
 ///
-/// An axis is found by the channel's name: `gyro` or `rate`, or `acc`, then `x`, `y` or `z` (or 0, 1, 2) at the end, brackets aside.
-/// So `gyro_x`, `accelerometer_m_s2[2]` and `gyroADC[0]` are axes. The unit is that of the file; none means SI.
+/// An axis is found by the channel's name: `gyro` or `rate`, or `acc`, then `x`, `y` or `z` (or 0, 1, 2) at the end, brackets and
+/// a unit aside. So `gyro_x`, `gyro_x_dps`, `accelerometer_m_s2[2]` and `gyroADC[0]` are axes. The unit is that of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channels<const N: usize> {
     axes: [usize; N],
@@ -38,7 +34,7 @@ impl<const N: usize> Channels<N> {
     /// that a sensor does not have fails the build.
     ///
     /// # Panics
-    /// Panics if a name is no axis, or a unit is neither `rad/s` nor `deg/s`, `m/s²` nor `g`.
+    /// Panics if a name is no axis, or a unit is missing, or is neither `rad/s` nor `deg/s`, `m/s²` nor `g`.
     #[must_use]
     pub const fn new(sensor: Counts, names: [&str; N], units: [&str; N], counts: [f64; N]) -> Self {
         let mut channels = Self { axes: [0; N], scales: [0.0; N] };
@@ -51,7 +47,7 @@ impl<const N: usize> Channels<N> {
                 )
             };
             let Some(unit) = unit(units[channel], axis < 3) else {
-                panic!("a unit in flight.toml is neither rad/s, deg/s, m/s² nor g")
+                panic!("a channel's `unit` in flight.toml must be rad/s, deg/s, m/s² or g")
             };
             let si = if axis < 3 { sensor.rate } else { sensor.acceleration };
             channels.axes[channel] = axis;
@@ -97,61 +93,4 @@ impl OfCounts for i16 {
 /// Half away from zero; the conversion then cuts, and ends at the range.
 fn nearest(value: f32) -> f32 {
     value + 0.5_f32.copysign(value)
-}
-
-/// Rates about x, y and z are 0 to 2, accelerations 3 to 5.
-const fn axis(name: &str) -> Option<usize> {
-    let bytes = name.as_bytes();
-    let mut end = bytes.len();
-    while end > 0 && matches!(bytes[end - 1], b']' | b')' | b' ') {
-        end -= 1;
-    }
-    let letter = if end > 0 { bytes[end - 1].to_ascii_lowercase() } else { 0 };
-    let own = match letter {
-        b'x' | b'0' => 0,
-        b'y' | b'1' => 1,
-        b'z' | b'2' => 2,
-        _ => return None,
-    };
-    if has(bytes, b"acc") {
-        Some(CHANNELS / 2 + own)
-    } else if has(bytes, b"gyro") || has(bytes, b"rate") {
-        Some(own)
-    } else {
-        None
-    }
-}
-
-/// How much of an SI unit a unit is.
-const fn unit(unit: &str, is_rate: bool) -> Option<f64> {
-    let bytes = unit.as_bytes();
-    let known: &[(&[u8], f64)] = if is_rate {
-        &[(b"", 1.0), (b"rad/s", 1.0), (b"deg/s", RADIANS), ("°/s".as_bytes(), RADIANS)]
-    } else {
-        &[(b"", 1.0), ("m/s²".as_bytes(), 1.0), (b"m/s^2", 1.0), (b"m/s2", 1.0), (b"g", G)]
-    };
-    let mut at = 0;
-    while at < known.len() {
-        if known[at].0.len() == bytes.len() && has(bytes, known[at].0) {
-            return Some(known[at].1);
-        }
-        at += 1;
-    }
-    None
-}
-
-/// Whether a text has a part, in lower case or not.
-const fn has(text: &[u8], part: &[u8]) -> bool {
-    let mut start = 0;
-    while start + part.len() <= text.len() {
-        let mut at = 0;
-        while at < part.len() && text[start + at].eq_ignore_ascii_case(&part[at]) {
-            at += 1;
-        }
-        if at == part.len() {
-            return true;
-        }
-        start += 1;
-    }
-    false
 }

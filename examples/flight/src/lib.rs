@@ -34,6 +34,7 @@ mod device;
 mod fault;
 mod i2c;
 mod imu;
+mod names;
 mod pace;
 mod rounds;
 mod sampler;

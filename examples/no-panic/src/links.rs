@@ -232,7 +232,9 @@ fn family<I: Input>(chip: OdinChip<I, Bus, Bus>, registers: &I::Registers, synap
             let mut spikes = Spikes::<4>::new();
             network.answers(tick(), |event| spikes.push(event))(a);
             hide((network.input(3).is_some(), spikes.as_slice().len()));
-            hide(gated.run(&network.registers()).is_ok());
+            if let Ok(running) = gated.run(&network.registers()) {
+                hide(is_witness_right(running, &network));
+            }
         }
     }
     if let Ok(gated) = chip.gated() {
@@ -259,6 +261,21 @@ fn family<I: Input>(chip: OdinChip<I, Bus, Bus>, registers: &I::Registers, synap
 fn feed<I: Input>(chip: &mut Running<'_, I, Bus, Bus>) -> bool {
     let Some(mut events) = EVENTS.consumer() else { return false };
     chip.feed(events.waiting(), |_| black_box(I::LEAK_ALL), hide).is_ok()
+}
+
+fn is_witness_right<I: Input>(chip: Running<'_, I, Bus, Bus>, network: &impl Describe<I>) -> bool {
+    let layers = black_box([StepsLayer { neurons: 3, loops: false }]);
+    let steps = black_box(Steps {
+        inputs: 2,
+        has_bias: false,
+        rows: &[1],
+        layers: &layers,
+        rungs: 3,
+        leaks: &[],
+        lift: 0,
+        own_leaks: &[],
+    });
+    chip.check_witness(&steps, network, hide).is_ok()
 }
 
 /// A step in which neurons compare once.

@@ -60,6 +60,7 @@ pub fn reckon() {
             let steps = black_box(ReckOnSteps { inputs, ticks: &ticks, late, outputs });
             let mut state = black_box(ReckOnStepsState::REST);
             hide(sample.run(&steps, &mut state, black_box([1, 2])).is_ok());
+            hide(state.values());
         }
         hide(sample.end().is_ok());
     }

@@ -62,7 +62,11 @@ impl Counts {
         };
         // The scale has 24 bits: more digits than these are its rounding.
         let counts = (counts * 1e4).round() / 1e4;
-        Some(if counts == 1.0 { base.to_owned() } else { format!("{base}/{counts}") })
+        Some(if (counts - 1.0).abs() < f64::EPSILON {
+            base.to_owned()
+        } else {
+            format!("{base}/{counts}")
+        })
     }
 }
 

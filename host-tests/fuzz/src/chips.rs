@@ -11,10 +11,11 @@ use silicon::Board;
 use silicon::board::CallFault;
 use spikewire::Tick;
 use spikewire_chips::{
-    AerPort, Akd1500, ConvolutionEvent, DenseEvent, Input, InputBank, NetworkBytes, Odin, OdinChip,
-    OdinInput, OdinRegisters, OdinSynapse, OutputSource, ReckOn, ReckOnOutputs, ReckOnPort,
-    ReckOnSettings, ReckOnStep, ReckOnSteps, ReckOnStepsState, ReckOnTarget, ReckOnTick, Registers,
-    Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinRegisters, Xylo, XyloMap,
+    AerPort, Akd1500, ConvolutionEvent, DenseEvent, Describe, Input, InputBank, NetworkBytes, Odin,
+    OdinChip, OdinInput, OdinRegisters, OdinSynapse, OutputSource, ReckOn, ReckOnOutputs,
+    ReckOnPort, ReckOnSettings, ReckOnStep, ReckOnSteps, ReckOnStepsState, ReckOnTarget,
+    ReckOnTick, Registers, Steps, StepsLayer, StepsState, TinyOdin, TinyOdinInput, TinyOdinNeuron,
+    TinyOdinRegisters, Xylo, XyloMap,
 };
 
 use crate::script::Script;
@@ -333,10 +334,14 @@ fn stepped(script: &mut Script) {
         let count = script.below(6);
         (0..count).map(|_| script.byte().into()).collect()
     };
-    let layers: Vec<StepsLayer> = few(script)
-        .into_iter()
-        .map(|neurons| StepsLayer { neurons: neurons << script.below(9), loops: neurons & 1 == 1 })
-        .collect();
+    // Most networks are small enough to be loaded.
+    let is_small = script.below(4) > 0;
+    let size = |size: u16| if is_small { size & 3 } else { size };
+    let mut layers = vec![];
+    for neurons in few(script) {
+        let loops = neurons & 1 == 1;
+        layers.push(StepsLayer { neurons: size(neurons >> 1 << script.below(9)), loops });
+    }
     let mut leaks: Vec<Vec<u16>> = (0..script.below(4)).map(|_| few(script)).collect();
     let rungs: u16 = script.byte().into();
     let mut lift: u16 = script.byte().into();
@@ -348,14 +353,14 @@ fn stepped(script: &mut Script) {
     }
     let leaks: Vec<&[u16]> = leaks.iter().map(Vec::as_slice).collect();
     let steps = Steps {
-        inputs: script.byte().into(),
+        inputs: size(script.byte().into()),
         has_bias: script.below(2) == 0,
-        rows: &few(script),
+        rows: &few(script).into_iter().map(size).collect::<Vec<_>>(),
         layers: &layers,
         rungs,
         leaks: &leaks,
         lift,
-        own_leaks: &few(script),
+        own_leaks: &few(script).into_iter().map(size).collect::<Vec<_>>(),
     };
     assert!(steps.first_rise() <= steps.all_rows(), "rows behind those of the sources");
     let neurons = steps

@@ -5,6 +5,7 @@ use clap::builder::{MapValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use flight_logs::{Kind, Packing};
 use lab::dataset::{self, ChannelsOf, Found, Split};
+use lab::flight::Flight;
 use lab::input::{self, Delimiter, TimeUnit, above_zero};
 use std::fs;
 use std::io::{self, BufRead, Cursor, Read};
@@ -256,6 +257,18 @@ impl ChannelOptions {
         };
         input::InputOptions { input: input.to_owned(), channel }
     }
+}
+
+/// Reads a flight file, and prints on standard error the parameters that the sample type changes.
+///
+/// # Errors
+/// Returns an error, with file and line, if the file is not a valid flight.
+pub(crate) fn read_flight(path: &Path) -> Result<Flight> {
+    let flight = Flight::read(path)?;
+    for rounded in flight.rounded() {
+        eprintln!("{}: {rounded}", path.display());
+    }
+    Ok(flight)
 }
 
 /// Temporary copy of standard input; `None` if no copy was needed.

@@ -231,7 +231,7 @@ fn a_network_becomes_the_module_of_the_firmware() {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/trained/src/braille.rs");
     assert_eq!(ran.output, fs::read_to_string(firmware).unwrap());
     for words in [
-        "10568 bytes of flash for weights and neurons, 504 bytes of RAM",
+        "10568 bytes of flash for weights and neurons, 520 bytes of RAM",
         "node `lif1.lif`: 40, 0; 118, 118, 0.0",
         "outputs agree in 100.0 % of 256 steps",
         "a step adds 105.9 weights, 407 at most, and visits 47 neurons",

@@ -191,8 +191,8 @@ fn a_report_does_not_depend_on_the_number_of_logs() {
         assert_eq!(ran.json()["summary"]["refused"], 1, "{asked}");
     }
     // An option that does not apply to a log is left out if a directory is given.
-    ran!("score {SF} --rate 200 {CHANNELS} {}", at("one"));
-    refused(&format!("score {SF} --rate 200 {}", at("one/log.mcap")), "", &["--rate"]);
+    ran!("score {SF} --delimiter , {CHANNELS} {}", at("one"));
+    refused(&format!("score {SF} --delimiter , {}", at("one/log.mcap")), "", &["--delimiter"]);
 
     // Every log has an error of 0.
     for name in ["0.csv", "00.csv"] {

@@ -61,6 +61,19 @@ fn packets_have_the_rate_of_their_samples() {
     assert!(encoded.contains("# rate=800\n"), "{}", &encoded[..200]);
     let given = ran!("encode --scheme sf --threshold 0.1 --rate 750 {table}").output;
     assert!(given.contains("# rate=750\n"), "{}", &given[..200]);
+    // No period is written, and no advice given, unless the rate is.
+    let words = ["800.00 Hz by samples through length", "--rate says how many a second are taken"];
+    let advise = "advise --evaluations 3 --max-rmse 0.1";
+    refused(&format!("{advise} {table}"), "", &words);
+    assert!(ran!("{advise} --rate 800 {table}").output.contains("800"));
+    let tune = "tune --scheme sf --max-rmse 0.1 --evaluations 3 --emit flight";
+    refused(&format!("{tune} {table}"), "", &words);
+    assert!(ran!("{tune} --rate 800 {table}").output.contains("period = 1250\n"));
+    let (directory, _) = file("unused", "");
+    let set = directory.path().join("set").display().to_string();
+    ran!("dataset --scheme sf --threshold 0.1 --test 0 {table} -o {set}");
+    let manifest = std::fs::read_to_string(format!("{set}/manifest.jsonl")).unwrap();
+    assert!(manifest.contains("\"rate\":null") && manifest.contains("by the median step"));
 }
 
 #[test]

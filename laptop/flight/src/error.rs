@@ -1,5 +1,6 @@
 //! Errors of reading a flight file, as values that a program can match.
 
+use catalogue::run::SampleType;
 use std::path::Path;
 use std::{error, fmt, io};
 
@@ -21,7 +22,8 @@ pub struct Place {
     pub file: Option<Box<Path>>,
     /// Index of the channel, if the error is in a channel.
     pub channel: Option<usize>,
-    /// Number of the line, counted from 1, if it is known.
+    /// Number of the line, counted from 1, if the flight was parsed from text: that of the wrong key, or of the channel
+    /// that lacks it, or 1.
     pub line: Option<usize>,
 }
 
@@ -67,7 +69,37 @@ pub enum FlightErrorKind {
     NotOneBank,
     /// The scheme cannot be written as a constant in Rust, because it needs a random generator of the user's.
     NoConstant,
-    /// The scheme or the filter refuses the value, with this error.
+    /// A parameter that is a number is given as a text.
+    Quoted,
+    /// The period is so short that it is likely given in ms.
+    Period {
+        /// Period in the file.
+        given: u16,
+        /// Shortest period allowed, in µs.
+        min: u16,
+    },
+    /// The unit is written in a way that is not read here.
+    Unit {
+        /// Unit in the file.
+        given: String,
+        /// Unit that is meant.
+        meant: &'static str,
+    },
+    /// A channel of a firmware has no unit, so that its samples could be too large or too small by any factor.
+    NoUnit {
+        /// Name of the channel.
+        name: String,
+    },
+    /// The sample type changes the value by more than a tenth.
+    Rounded {
+        /// Number in the file.
+        given: f64,
+        /// Number that the sample type has in its place.
+        nearest: f64,
+        /// The sample type.
+        sample: SampleType,
+    },
+    /// The scheme or the filter refuses the value, with this error, which names the value.
     Refused(Box<dyn error::Error + Send + Sync>),
 }
 
@@ -111,7 +143,8 @@ impl fmt::Display for FlightError {
         if let Some(channel) = channel {
             write!(f, "channel {channel}: ")?;
         }
-        if !self.parameter.is_empty() {
+        // The error of a scheme or a filter names its parameter itself.
+        if !self.parameter.is_empty() && !matches!(self.kind, FlightErrorKind::Refused(_)) {
             write!(f, "{} ", self.parameter)?;
         }
         self.kind.fmt(f)
@@ -136,9 +169,26 @@ impl fmt::Display for FlightErrorKind {
             Self::NotOneBank => f.write_str(
                 "differs from the first channel in more than numbers: no bank holds both",
             ),
+            Self::Quoted => f.write_str("must be a number, without quotation marks"),
+            Self::Period { given, min } => write!(
+                f,
+                "{given} is in µs, {min} to 65535; {given} ms are {}",
+                u32::from(*given) * 1000
+            ),
+            Self::Unit { given, meant } => write!(f, "`{given}` is written `{meant}`"),
+            Self::NoUnit { name } => write!(
+                f,
+                "is missing for {name:?}: give `unit = \"rad/s\"` or \"deg/s\", \"m/s²\" or \"g\", or let the \
+                 name end in _rad_s, _dps, _deg_s, _m_s2 or _g"
+            ),
+            Self::Rounded { given, nearest, sample } => write!(
+                f,
+                "{given} would be {nearest} in {sample}, which is off by more than a tenth: take another sample type, \
+                 more `counts`, or a value that {sample} has"
+            ),
             Self::NoConstant => f.write_str("has no constant: it takes a generator of yours"),
             Self::Refused(error) => {
-                write!(f, "is refused: {error}")?;
+                write!(f, "{error}")?;
                 let mut cause = error.source();
                 while let Some(error) = cause {
                     write!(f, ": {error}")?;

@@ -1,13 +1,15 @@
 //! A flight: the description from which both sender and receiver are made, checked for consistency.
 
+use crate::units::{self, unit_of_name};
 use crate::{Filter, Filtering, FlightError, FlightErrorKind};
 use catalogue::run::{Asked, Error, Known, RunTime, SampleType, Settings, Value, Visit};
 use catalogue::{Info, Kind, Parameter, for_sample_type};
 use spikewire::link::{CLOCK_TOLERANCE, Coding, longest_slot};
-use spikewire::{Fingerprint, Sample, Scheme};
+use spikewire::{ConfigError, Fingerprint, Sample, Scheme};
 use std::collections::BTreeSet;
 use std::num::NonZeroU16;
 use std::ops::Deref;
+use std::path::PathBuf;
 
 /// A channel of a flight: one sensor signal.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +18,8 @@ pub struct Channel {
     pub name: String,
     /// Name of the column, or topic and field, that holds the channel's values in a recording.
     pub source: String,
-    /// Unit of the recording's values, such as `rad/s`; empty if it is unknown.
+    /// Unit of the recording's values, such as `rad/s`; empty if it is unknown. [`Flight::new`] fills in the unit for
+    /// which the end of `name` or `source` [stands](crate::unit_of_name).
     pub unit: String,
     /// Number of counts in one unit, above 0. A sample is the recording's value times this number. 1 if samples are in
     /// the unit itself.
@@ -77,7 +80,7 @@ pub struct Parts {
 /// assert_eq!(flight.coding().period.get(), 2000);
 ///
 /// let error = Flight::parse("version = 1\nscheme = \"sod\"\nperiod = 0").unwrap_err();
-/// assert_eq!(error.place.line, Some(3));
+/// assert_eq!((error.parameter.as_str(), error.place.line), ("period", Some(3)));
 /// # Ok::<(), spikewire_flight::FlightError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -85,6 +88,10 @@ pub struct Flight {
     parts: Parts,
     settings: Vec<Settings>,
     fingerprint: Fingerprint,
+    /// Line of each channel in the flight file; empty if the flight was not parsed from text.
+    pub(crate) lines: Vec<Option<usize>>,
+    /// Other files from which the flight was read, such as a file of taps.
+    pub(crate) files: Vec<PathBuf>,
 }
 
 impl Deref for Flight {
@@ -98,6 +105,9 @@ impl Deref for Flight {
 /// Maximum number of channels: that of a receiver on the laptop.
 const MOST: usize = 64;
 
+/// Shortest period in µs. The fastest inertial sensors take a sample in 31 µs; a shorter period was meant in ms.
+const SHORTEST: u16 = 30;
+
 impl Flight {
     /// Checks that the parts fit together, and makes a flight of them.
     ///
@@ -105,53 +115,81 @@ impl Flight {
     /// Returns an error if there are no channels or more than 64, if two have the same name, if a number is out of its
     /// range, if the scheme refuses a parameter or lacks one, or if a [`Bank`](spikewire::Bank) cannot hold all
     /// channels.
-    pub fn new(parts: Parts) -> Result<Self, FlightError> {
+    pub fn new(mut parts: Parts) -> Result<Self, FlightError> {
         let range = |name: &str, given: f64, min: f64, max: f64| {
             let is_within = (min..=max).contains(&given);
             let kind = FlightErrorKind::Range { given, min, max };
             if is_within { Ok(()) } else { Err(FlightError::new(name, kind)) }
         };
+        if parts.period.get() < SHORTEST {
+            let kind = FlightErrorKind::Period { given: parts.period.get(), min: SHORTEST };
+            return Err(FlightError::new("period", kind));
+        }
         range("channel", parts.channels.len() as f64, 1.0, MOST as f64)?;
         range("keyframe_every", parts.keyframe_every.into(), 1.0, f64::from(u32::MAX))?;
         range("clock_ppm", parts.clock_ppm.into(), 0.0, 1e5)?;
         let mut names = BTreeSet::new();
-        for (index, channel) in parts.channels.iter().enumerate() {
+        for (index, channel) in parts.channels.iter_mut().enumerate() {
+            let error = |name, kind| FlightError::new(name, kind).of_channel(index);
             range("counts", channel.counts, f64::MIN_POSITIVE, f64::MAX)
                 .map_err(|error| error.of_channel(index))?;
+            if let Some(meant) = units::meant(&channel.unit) {
+                let given = channel.unit.clone();
+                return Err(error("unit", FlightErrorKind::Unit { given, meant }));
+            }
+            if channel.unit.is_empty() {
+                let unit = unit_of_name(&channel.name).or_else(|| unit_of_name(&channel.source));
+                channel.unit = unit.unwrap_or_default().to_owned();
+            }
             if !names.insert(&channel.name) {
-                return Err(FlightError::new("name", FlightErrorKind::Twice).of_channel(index));
+                return Err(error("name", FlightErrorKind::Twice));
             }
         }
         let rate = rate(&parts);
         if let Some(filter) = parts.filter {
-            let started = filter.start(parts.sample, rate as f32);
-            started.map(drop).map_err(|error| FlightError::refused("filter", error))?;
+            filter.start(parts.sample, rate as f32).map(drop).map_err(refused_filter)?;
         }
         let mut settings = Vec::new();
         for (index, channel) in parts.channels.iter().enumerate() {
             let settled = settle(&parts, channel).map_err(|error| error.of_channel(index))?;
             settings.push(settled.with_stream(index as u64));
         }
-        let mut flight = Self { parts, settings, fingerprint: Fingerprint::new("") };
+        let fingerprint = Fingerprint::new("");
+        let mut flight =
+            Self { parts, settings, fingerprint, lines: Vec::new(), files: Vec::new() };
         flight.check_bank()?;
+        flight.check_rounding()?;
         flight.fingerprint = flight.described()?;
         Ok(flight)
+    }
+
+    /// Checks that each channel has a unit, as a firmware needs it to bring its sensor's counts to samples. The unit of
+    /// a ratio is `1`.
+    ///
+    /// # Errors
+    /// Returns an error for the first channel without a unit.
+    pub fn check_units(&self) -> Result<(), FlightError> {
+        let Some(index) = self.channels.iter().position(|channel| channel.unit.is_empty()) else {
+            return Ok(());
+        };
+        let kind = FlightErrorKind::NoUnit { name: self.channels[index].name.clone() };
+        Err(FlightError::new("unit", kind).of_channel(index).at(self.line_of(index)))
     }
 
     /// Checks that a [`Bank`](spikewire::Bank) can hold all channels, that a sub-timestep takes at least 1 µs, and that a
     /// receiver can tell sub-timesteps apart with a clock as fast as its tolerance allows.
     fn check_bank(&self) -> Result<(), FlightError> {
-        let shape = |settings: &Settings| -> Vec<String> {
-            let parameters =
-                self.scheme.parameters.iter().filter(|parameter| parameter.kind != Kind::Number);
-            parameters
-                .filter_map(|parameter| Some(settings.get(parameter.key())?.to_string()))
-                .collect()
-        };
-        let first = shape(&self.settings[0]);
-        if let Some(index) = self.settings.iter().position(|settings| shape(settings) != first) {
-            let error = FlightError::new("parameters", FlightErrorKind::NotOneBank);
-            return Err(error.of_channel(index));
+        let [first, others @ ..] = &self.settings[..] else { return Ok(()) };
+        for parameter in self.scheme.parameters {
+            if parameter.kind == Kind::Number {
+                continue;
+            }
+            let key = parameter.key();
+            let differs = |settings: &Settings| settings.get(key) != first.get(key);
+            if let Some(index) = others.iter().position(differs) {
+                let error = FlightError::new(parameter.name, FlightErrorKind::NotOneBank);
+                return Err(error.of_channel(index + 1));
+            }
         }
         let slots = self.slots() as u32;
         if self.is_slotted() && !self.has_room(slots) {
@@ -163,6 +201,11 @@ impl Flight {
             return Err(FlightError::new("slots", kind));
         }
         Ok(())
+    }
+
+    /// Returns the line of a channel in the flight file; `None` if the flight was not parsed from text.
+    pub fn line_of(&self, channel: usize) -> Option<usize> {
+        self.lines.get(channel).copied().flatten()
     }
 
     /// Returns whether a sample has time for so many sub-timesteps.
@@ -216,7 +259,7 @@ impl Flight {
         let Some(filter) = self.filter else { return Ok(Vec::new()) };
         let start = |_: &Channel| {
             let started = filter.start(self.sample, self.rate() as f32);
-            started.map_err(|error| FlightError::refused("filter", error))
+            started.map_err(refused_filter)
         };
         self.channels.iter().map(start).collect()
     }
@@ -272,7 +315,7 @@ impl Flight {
     fn described(&self) -> Result<Fingerprint, FlightError> {
         let name = self.scheme.name;
         let filter = self.filter.map(|filter| filter.fingerprint(self.sample, self.rate() as f32));
-        let filter = filter.transpose().map_err(|error| FlightError::refused("filter", error))?;
+        let filter = filter.transpose().map_err(refused_filter)?;
         let scheme = |settings| {
             let scheme = for_sample_type!(self.sample, S => catalogue::visit::<S, _>(name, settings, Described))?;
             Ok(filter.map_or(scheme, |filter| filter.and(scheme)))
@@ -351,7 +394,6 @@ fn settle(parts: &Parts, channel: &Channel) -> Result<Settings, FlightError> {
     }
     let past = vec![0.0; scheme.looks_back(&asked)];
     let known = Known { calibrated: None, first: &past, can_calibrate: false };
-    let refused = |error| FlightError::refused("", error);
     let is_open = |parameter: &&Parameter| {
         let is_given = asked.get(parameter.name).is_some() || parameter.default.is_some();
         parameter.is_recorded && parameter.name != "start" && !is_given
@@ -359,9 +401,22 @@ fn settle(parts: &Parts, channel: &Channel) -> Result<Settings, FlightError> {
     let settings = scheme.resolve(parts.sample, &asked, &known).map_err(|error| {
         match parts.scheme.parameters.iter().find(is_open) {
             Some(open) => FlightError::new(open.name, FlightErrorKind::Missing),
-            None => refused(error),
+            None => refused(parts.scheme, error),
         }
     })?;
-    scheme.codec(&settings).map_err(refused)?;
+    scheme.codec(&settings).map_err(|error| refused(parts.scheme, error))?;
     Ok(settings)
+}
+
+/// Returns the error of a scheme's parameter, under the name that it has in the flight file.
+fn refused(scheme: &Info, error: Error) -> FlightError {
+    let name = error.parameter.as_ref().map_or("", |given| given.name.as_ref());
+    let parameter = scheme.parameters.iter().find(|own| [own.name, own.key()].contains(&name));
+    FlightError::refused(parameter.map_or(name, |parameter| parameter.name).to_owned(), error)
+}
+
+/// Returns the error of a filter's number, under its name.
+fn refused_filter(error: ConfigError) -> FlightError {
+    let parameter = Error::from(error).parameter;
+    FlightError::refused(parameter.map_or("filter".into(), |given| given.name), error)
 }

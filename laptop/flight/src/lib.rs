@@ -29,11 +29,18 @@ mod error;
 mod file;
 mod filter;
 mod flight;
+mod keys;
+mod rounding;
 mod rust;
 mod script;
+mod spelling;
+mod units;
 
 pub use error::{FlightError, FlightErrorKind, Place};
 pub use filter::{Filter, Filtering};
 pub use flight::{Channel, Flight, Parts};
+pub use rounding::Rounded;
 pub use rust::rust;
 pub use script::build;
+pub use spelling::escaped;
+pub use units::unit_of_name;

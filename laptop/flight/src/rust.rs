@@ -1,6 +1,6 @@
 //! Generates sender and receiver of a flight in Rust.
 
-use crate::{Flight, FlightError, FlightErrorKind};
+use crate::{Flight, FlightError, FlightErrorKind, escaped};
 use catalogue::run::{Constant, Rust};
 use std::fmt::{Debug, Write};
 
@@ -55,11 +55,13 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         format!("pub const COUNTS: [f64; CHANNELS] = [{counts}];"),
     );
     item("Type of every channel's scheme.", format!("pub type Code = {code};"));
+    let rounded = flight.rounded();
     for (index, (Constant { value, .. }, names)) in statics.iter().enumerate() {
-        let words = format!(
-            "Scheme with the parameters of {}.",
-            names.join(", ").replace(['\n', '\r'], " ")
-        );
+        let mut words = format!("Scheme with the parameters of {}.", escaped(&names.join(", ")));
+        for rounded in rounded.iter().filter(|rounded| names.contains(&rounded.channel.as_str())) {
+            // Writing to a string cannot fail.
+            let _ = write!(words, "\n/// Rounded: {}.", escaped(&rounded.to_string()));
+        }
         item(&words, format!("static SCHEME_{index}: Code = {value};"));
     }
     item(

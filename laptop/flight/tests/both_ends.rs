@@ -180,4 +180,4 @@ macro_rules! flights {
     )*};
 }
 
-flights! { sod sf asf grf_slots notch first_order }
+flights! { sod sod_i32 sf sf_q2_14 asf asf_q16_16 grf_slots notch first_order }

@@ -20,7 +20,10 @@ fn a_short_file_has_its_defaults() {
 fn an_invalid_file_is_refused_with_key_and_line() {
     for (text, parameter, line, words) in [
         ("nonsense", "", Some(1), "cannot be read"),
-        ("version = 1", "", Some(1), "missing field `scheme`"),
+        ("version = 1", "scheme", Some(1), "is missing"),
+        ("scheme = \"sf\"\nperiod = 2000", "version", Some(1), "is missing"),
+        ("\nversion = 1\nscheme = \"sf\"", "period", Some(1), "is missing"),
+        ("version = 1\nversion = 1", "", Some(2), "duplicate key"),
         ("version = 2\nscheme = \"sf\"\nperiod = 1", "version", Some(1), "2 is not known"),
         (
             "version = 1\nscheme = \"snf\"\nperiod = 1",
@@ -28,7 +31,9 @@ fn an_invalid_file_is_refused_with_key_and_line() {
             Some(2),
             "`snf` is unknown; there are tbr,",
         ),
-        ("version = 1\nscheme = \"sf\"\nperiod = 0", "0", Some(3), "cannot be read"),
+        ("version = 1\nscheme = \"sf\"\nperiod = 0", "period", Some(3), "cannot be read"),
+        ("version = 1\nscheme = \"sf\"\nperiod = \"2 ms\"", "period", Some(3), "cannot be read"),
+        ("version = 1\nscheme = \"sf\"\nperiod = 2", "period", Some(3), "2 ms are 2000"),
         (
             "version = 1\nscheme = \"sf\"\nsample = \"f64\"\nperiod = 1",
             "sample",
@@ -41,7 +46,7 @@ fn an_invalid_file_is_refused_with_key_and_line() {
             Some(4),
             "unknown field",
         ),
-        ("version = 1\nscheme = \"sf\"\nperiod = 2000", "channel", None, "0 must be in 1..=64"),
+        ("version = 1\nscheme = \"sf\"\nperiod = 2000", "channel", Some(1), "0 must be in 1..=64"),
     ] {
         let error = Flight::parse(text).unwrap_err();
         assert_eq!(
@@ -62,26 +67,65 @@ fn an_invalid_file_is_refused_with_key_and_line() {
         ),
         (
             "filter = { kind = \"low-pass\", corner = 300 }\n[[channel]]\nname = \"a\"",
-            "filter",
+            "corner",
             None,
             4,
             "corner 300 must lie in",
         ),
+        (
+            "[filter]\nkind = \"notch\"\n\ncentre = 80\nq = 1000\n[[channel]]\nname = \"a\"",
+            "q",
+            None,
+            8,
+            "q 1000 must lie in",
+        ),
+        ("[filter]\nkind = \"notch\"\ncentre = 80\n", "q", None, 4, "is missing"),
+        (
+            "[filter]\nkind = \"notch\"\nq = 3\ncorner = 80\n",
+            "corner",
+            None,
+            7,
+            "there are centre, q",
+        ),
+        ("[filter]\ncorner = 80\nkind = \"high-pass\"", "kind", None, 6, "is unknown"),
+        ("[filter]\nkind = \"notch\"\ncentre = \"80\"\n", "centre", None, 6, "cannot be read"),
         ("[[channel]]\nname = \"a\"\nunits = \"m\"", "units", None, 6, "unknown field"),
         ("[[channel]]\nname = \"a\"", "threshold", Some(0), 4, "is missing"),
+        ("\n[[channel]]\nunit = \"V\"", "name", Some(0), 5, "is missing"),
+        (
+            "[[channel]]\nname = \"a\"\nunit = \"dps\"\nparameters = { threshold = 1 }",
+            "unit",
+            Some(0),
+            6,
+            "`dps` is written `deg/s`",
+        ),
+        (
+            "[[channel]]\nname = \"a\"\n[channel.parameters]\n\nthreshold = -1",
+            "threshold",
+            Some(0),
+            8,
+            "threshold -1 must be above 0",
+        ),
+        (
+            "[parameters]\nthreshold = 1e99\n[[channel]]\nname = \"a\"",
+            "threshold",
+            Some(0),
+            5,
+            "must be",
+        ),
         (
             "[[channel]]\nname = \"a\"\nparameters = { window = 3 }",
             "parameters",
-            None,
+            Some(0),
             6,
             "`window` is unknown; there are threshold, start",
         ),
         (
             "[[channel]]\nname = \"a\"\nparameters = { threshold = \"x\" }",
             "threshold",
-            None,
+            Some(0),
             6,
-            "is not a number",
+            "must be a number, without quotation marks",
         ),
         (
             "[[channel]]\nname = \"a\"\nparameters = { threshold = 1, start = 0 }",
@@ -94,17 +138,23 @@ fn an_invalid_file_is_refused_with_key_and_line() {
             "[[channel]]\nname = \"a\"\ncounts = 0\nparameters = { threshold = 1 }",
             "counts",
             Some(0),
-            4,
+            6,
             "0 must be in",
         ),
         (
             "[parameters]\nthreshold = 1\n[[channel]]\nname = \"a\"\n\n[[channel]]\nname = \"a\"",
             "name",
             Some(1),
-            9,
+            10,
             "names two channels",
         ),
-        ("[[channel]]\nname = \"a\"\nparameters = { threshold = -1 }", "", Some(0), 4, "above 0"),
+        (
+            "[[channel]]\nname = \"a\"\nparameters = { threshold = -1 }",
+            "threshold",
+            Some(0),
+            6,
+            "above 0",
+        ),
     ] {
         let error = after(more);
         assert_eq!(
@@ -123,7 +173,7 @@ fn channels_that_differ_in_a_count_are_refused() {
         [[channel]]\nname = \"b\"\nparameters = { threshold = 1, spikes = 5 }\n";
     let error = Flight::parse(text).unwrap_err();
     assert!(matches!(error.kind, FlightErrorKind::NotOneBank), "{error}");
-    assert_eq!((error.place.channel, error.place.line), (Some(1), Some(7)));
+    assert_eq!((error.place.channel, error.place.line), (Some(1), Some(9)));
     assert!(Flight::parse(&text.replace("= 5", "= 4")).is_ok());
 }
 
@@ -178,7 +228,7 @@ proptest! {
     fn a_written_file_is_read_back(
         thresholds in prop::collection::vec(1e-3_f64..1e3, 1..8),
         counts in 1e-2_f64..1e4,
-        period in 1_u16..,
+        period in 30_u16..,
         keyframe_every in 1_u32..1000,
         spikes in 1_u32..=127,
         corner in prop::option::of(0.01_f32..0.4),
@@ -208,4 +258,105 @@ proptest! {
         let is_low_pass = matches!(again.filter, None | Some(Filter::LowPass { .. }));
         prop_assert!(is_low_pass);
     }
+}
+
+/// Every error names the line of the wrong key, or of the channel that lacks it.
+#[test]
+fn every_wrong_value_is_told_with_the_line_of_its_key() {
+    let right = "version = 1\nscheme = \"grf-slots\"\nsample = \"i16\"\nperiod = 4000\nkeyframe_every = 25\n\
+                 clock_ppm = 100\n\n[filter]\nkind = \"low-pass\"\ncorner = 40\n\n[parameters]\nneurons = 9\n\
+                 slots = 8\n\n[[channel]]\nname = \"a\"\nunit = \"V\"\ncounts = 9.0\n\n[channel.parameters]\n\
+                 min = -3000\nmax = 3000\n";
+    Flight::parse(right).unwrap();
+    let mut told = 0;
+    for (index, line) in right.lines().enumerate() {
+        let Some((key, _)) = line.split_once(" = ") else { continue };
+        for wrong in ["\"x\"", "1e99", "[\n\n1,\n\"x\"]", "nan", "{ }", "1979-05-27"] {
+            let mut lines: Vec<String> = right.lines().map(str::to_owned).collect();
+            lines[index] = format!("{key} = {wrong}");
+            let Err(error) = Flight::parse(&lines.join("\n")) else { continue };
+            assert_eq!(error.place.line, Some(index + 1), "{key} = {wrong}: {error}");
+            assert_eq!(error.parameter, key, "{key} = {wrong}: {error}");
+            told += 1;
+        }
+    }
+    assert!(told > 70, "{told}");
+}
+
+/// A parameter that the sample type changes by more than a tenth is refused; a smaller change is told.
+#[test]
+fn a_rounded_parameter_is_told_or_refused() {
+    let text = |sample: &str, threshold: &str| {
+        format!(
+            "version = 1\nscheme = \"sf\"\nsample = \"{sample}\"\nperiod = 2000\n[[channel]]\nname = \"a\"\n\
+             parameters = {{ threshold = {threshold} }}"
+        )
+    };
+    for (sample, threshold) in [("i16", "1.4"), ("q1.31", "3"), ("q8.8", "0.005"), ("i16", "1e6")] {
+        let error = Flight::parse(&text(sample, threshold)).unwrap_err();
+        assert!(matches!(error.kind, FlightErrorKind::Rounded { .. }), "{sample}: {error}");
+        assert_eq!((error.place.channel, error.place.line), (Some(0), Some(7)));
+    }
+    let flight = Flight::parse(&text("q8.8", "0.1")).unwrap();
+    let [rounded] = &flight.rounded()[..] else { panic!("{:?}", flight.rounded()) };
+    assert_eq!(rounded.to_string(), "a: threshold 0.1 is 0.1015625 in q8.8");
+    let module = rust(&flight).unwrap();
+    assert!(
+        module.contains("    /// Rounded: a: threshold 0.1 is 0.1015625 in q8.8.\n"),
+        "{module}"
+    );
+    for (sample, threshold) in [("f32", "0.1"), ("q8.8", "0.25"), ("i16", "3")] {
+        assert!(Flight::parse(&text(sample, threshold)).unwrap().rounded().is_empty());
+    }
+    // A small end of a wide range is no large change.
+    let range = "version = 1\nscheme = \"position\"\nsample = \"i16\"\nperiod = 2000\n[[channel]]\nname = \"a\"\n\
+                 parameters = { neurons = 4, min = 0.4, max = 100 }";
+    assert_eq!(Flight::parse(range).unwrap().rounded().len(), 1);
+}
+
+/// Names of users are written as text, not as the code or comment around them.
+#[test]
+fn names_are_escaped_in_rust_and_toml() {
+    let name = "e\u{301}\u{85}\u{202e}??/\n\"x\\";
+    let quoted = toml::Value::from(name);
+    let text = format!("{HEAD}[[channel]]\nname = {quoted}\nparameters = {{ threshold = 0.1 }}\n");
+    let flight = Flight::parse(&text).unwrap();
+    let module = rust(&flight).unwrap();
+    assert!(!module.contains(['\u{85}', '\u{202e}']), "{module}");
+    assert!(
+        module.contains(r"/// Scheme with the parameters of e\u{301}\u{85}\u{202e}??/\n"),
+        "{module}"
+    );
+    let written = flight.to_toml(&[format!("of {name}")]);
+    assert_eq!(Flight::parse(&written).unwrap().channels, flight.channels);
+}
+
+/// The path of a file of taps is relative to the flight file.
+#[test]
+fn taps_lie_beside_the_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("flight.toml");
+    let text = "version = 1\nscheme = \"hsa\"\nperiod = 2000\n[[channel]]\nname = \"a\"\n\
+                parameters = { filter = \"taps.txt\", shift = 0 }\n";
+    std::fs::write(&path, text).unwrap();
+    assert_eq!(Flight::read(&path).unwrap_err().place.line, Some(6));
+    std::fs::write(directory.path().join("taps.txt"), "0.5 1\n0.5\n").unwrap();
+    let flight = Flight::read(&path).unwrap();
+    assert_eq!(flight.settings()[0].numbers("taps").unwrap(), [0.5, 1.0, 0.5]);
+}
+
+#[test]
+fn a_unit_is_that_of_the_file_or_of_a_name() {
+    let text = format!(
+        "{HEAD}[parameters]\nthreshold = 1\n[[channel]]\nname = \"gyro_x_dps\"\n[[channel]]\nname = \"roll\"\n\
+         source = \"imu.rate_rad_s[0]\"\n[[channel]]\nname = \"gyro_dps_y\"\nunit = \"rad/s\"\n"
+    );
+    let flight = Flight::parse(&text).unwrap();
+    let units: Vec<&str> = flight.channels.iter().map(|channel| channel.unit.as_str()).collect();
+    assert_eq!(units, ["deg/s", "rad/s", "rad/s"]);
+    flight.check_units().unwrap();
+    let error = Flight::parse(&format!("{text}[[channel]]\nname = \"gyroADC[0]\"")).unwrap();
+    let error = error.check_units().unwrap_err();
+    assert_eq!((error.place.channel, error.place.line), (Some(3), Some(14)));
+    assert!(error.to_string().contains("give `unit = \"rad/s\"`"), "{error}");
 }

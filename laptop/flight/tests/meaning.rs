@@ -90,3 +90,14 @@ proptest! {
         same_as_by_hand!(i16, "i16", rate, rate * share, q, period);
     }
 }
+
+/// An error names a key where a key is wrong, and never takes a value for one.
+#[test]
+fn an_error_names_a_key_or_none() {
+    let error = Flight::parse(&flight(2000, "clock_ppm = 100_001")).unwrap_err();
+    assert_eq!(error.to_string(), "line 4: clock_ppm 100001 must be in 0..=100000");
+    let error = Flight::parse("version = 1\nscheme = \"sf\"\nperiod = -1").unwrap_err();
+    assert!(["", "period"].contains(&error.parameter.as_str()), "{error}");
+    let begins = error.to_string().replace("period ", "");
+    assert!(begins.starts_with("line 3: cannot be read: "), "{error}");
+}

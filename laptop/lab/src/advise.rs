@@ -347,6 +347,7 @@ impl Advice {
         /// Default of the allowed RMSE, as a share of the signal's standard deviation. The share gives a
         /// signal-to-noise ratio of 14 dB.
         const PART: f64 = 0.2;
+        recording.steady_rate()?;
         let look = ChannelSummary::of(recording);
         let objection = look.objection().filter(|_| look.verdict != Verdict::Clipped);
         let bytes = if matches!(request.sample, SampleType::Fixed16 { .. }) { 2.0 } else { 4.0 };

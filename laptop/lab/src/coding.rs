@@ -6,7 +6,9 @@ use crate::tune::RequestKind;
 use crate::{Error, Place, Result, Spot};
 use catalogue::Parameter;
 use catalogue::run::{Asked, Given, Known, SET, SampleType, Settings, Value};
+use spikewire_flight::escaped;
 use std::fs;
+use std::path::Path;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Table};
 
@@ -79,7 +81,8 @@ impl Coding {
                 let error = catalogue::run::Error::takes_no(scheme.info(), name);
                 return Err(Error::from(error).at(place(at)));
             };
-            let value = read(parameter, &value).map_err(|error| {
+            let directory = Path::new(file).parent().unwrap_or(Path::new(""));
+            let value = read(parameter, &value, directory).map_err(|error| {
                 let said = text.get(value.span()).unwrap_or_default();
                 let given = Given::listed(parameter.name, Some(format_args!("= {said}")));
                 Error { parameter: Some(given), ..error }.at(place(at))
@@ -142,7 +145,7 @@ impl Coding {
             };
             table.insert(name.to_owned(), value);
         }
-        let comments = comments.iter().map(|line| "# ".to_owned() + line);
+        let comments = comments.iter().map(|line| format!("# {}", escaped(line)));
         let named = [
             format!("scheme = \"{}\"", self.scheme.name()),
             format!("sample = \"{}\"", self.sample),
@@ -153,7 +156,12 @@ impl Coding {
 }
 
 /// Converts a TOML value to a value of `parameter`. Returns `None` if the parameter is a flag and the value is `false`.
-fn read(parameter: &Parameter, value: &Spanned<DeValue>) -> Result<Option<Value>> {
+/// The path of a file of taps is relative to `directory`.
+fn read(
+    parameter: &Parameter,
+    value: &Spanned<DeValue>,
+    directory: &Path,
+) -> Result<Option<Value>> {
     let number = |value: &DeValue| -> Result<f64> {
         let number = match value {
             DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
@@ -165,7 +173,7 @@ fn read(parameter: &Parameter, value: &Spanned<DeValue>) -> Result<Option<Value>
     let value = match value.get_ref() {
         DeValue::Boolean(false) => return Ok(None),
         DeValue::Boolean(true) => SET,
-        DeValue::String(text) => return Ok(Some(parameter.read(text)?)),
+        DeValue::String(text) => return Ok(Some(parameter.read_in(text, directory)?)),
         DeValue::Array(all) => {
             let all = all.iter().map(|value| number(value.get_ref()));
             Value::Numbers(all.collect::<Result<_>>()?)

@@ -25,7 +25,7 @@ pub fn encode_flight(
     output: impl FnOnce() -> Result<Output>,
 ) -> Result<(Output, Vec<Words>)> {
     let Coding { scheme, sample, asked } = Coding::of_flight(flight);
-    let input = flight::input(flight, input);
+    let input = flight::input(flight, input)?;
     let open =
         || -> Result<Box<dyn Source + '_>> { Ok(Box::new(Sampled::new(flight, input.open()?)?)) };
     encode_to(&open, &input, (scheme, sample, &asked), format, output)

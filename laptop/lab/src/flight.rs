@@ -31,22 +31,47 @@ impl Coding {
     }
 }
 
-/// Makes a [`Flight`] from the results of tuning. `rows` gives the name, the scheme and the settings of each channel.
-/// `sample` is the sample type, and `rate` is the number of samples a second. The flight sends 20 keyframes a second.
+/// The result of tuning a channel.
+#[derive(Clone, Copy, Debug)]
+pub struct TunedChannel<'a> {
+    /// Name of the channel.
+    pub name: &'a str,
+    /// Name by which the channel is found in its log: `TOPIC.FIELD`, or the column of a table.
+    pub source: &'a str,
+    /// Scheme.
+    pub scheme: Scheme,
+    /// Settings of the scheme, and their figures.
+    pub row: &'a Row,
+}
+
+/// Makes a [`Flight`] from the results of tuning, in the order of its channels. `sample` is the sample type, and `rate` is the number of samples a second. The flight sends 20 keyframes a second.
 ///
 /// # Errors
 /// Returns an error if there are no channels, or if their schemes differ. Returns an error if the channels differ in a
 /// parameter that must be equal, such as a filter or the number of neurons. Returns an error if the sample period
 /// cannot be expressed in whole µs.
-pub fn of_rows(rows: &[(&str, Scheme, &Row)], sample: SampleType, rate: f64) -> Result<Flight> {
-    let (_, scheme, _) = rows.first().ok_or(RequestKind::NoRecording)?;
-    if rows.iter().any(|(_, own, _)| own != scheme) {
+pub fn of_rows(rows: &[TunedChannel<'_>], sample: SampleType, rate: f64) -> Result<Flight> {
+    let scheme = rows.first().ok_or(RequestKind::NoRecording)?.scheme;
+    if rows.iter().any(|channel| channel.scheme != scheme) {
         return Err(RequestKind::SeveralSchemes.into());
     }
-    let asked = |(name, _, row): &(&str, Scheme, &Row)| {
-        ((*name).to_owned(), row.settings.to_asked(scheme.info()))
-    };
-    of_settings(*scheme, sample, rate, rows.iter().map(asked))
+    let mut channels = Vec::new();
+    for TunedChannel { name, source, row, .. } in rows {
+        let asked = row.settings.to_asked(scheme.info());
+        channels.push(Channel { source: (*source).to_owned(), ..channel(name, asked) });
+    }
+    of_channels(scheme, sample, rate, channels)
+}
+
+/// Returns a channel with the unit that its name shows, if any.
+fn channel(name: &str, asked: Asked) -> Channel {
+    Channel {
+        name: name.to_owned(),
+        source: name.to_owned(),
+        unit: known_unit(name).unwrap_or_default().to_owned(),
+        counts: 1.0,
+        asked,
+    }
 }
 
 /// Makes a [`Flight`] that sends 20 keyframes a second. `channels` gives the name of each channel, and the parameters
@@ -61,14 +86,18 @@ pub fn of_settings(
     rate: f64,
     channels: impl Iterator<Item = (String, Asked)>,
 ) -> Result<Flight> {
+    let channels = channels.map(|(name, asked)| channel(&name, asked)).collect();
+    of_channels(scheme, sample, rate, channels)
+}
+
+/// See [`of_settings`].
+fn of_channels(
+    scheme: Scheme,
+    sample: SampleType,
+    rate: f64,
+    channels: Vec<Channel>,
+) -> Result<Flight> {
     const KEYFRAMES: f64 = 20.0;
-    let channels = channels.map(|(name, asked)| Channel {
-        source: name.clone(),
-        unit: known_unit(&name).unwrap_or_default().to_owned(),
-        counts: 1.0,
-        name,
-        asked,
-    });
     Ok(Flight::new(Parts {
         scheme: scheme.info(),
         sample,
@@ -77,7 +106,7 @@ pub fn of_settings(
         clock_ppm: CLOCK_PPM,
         filter: None,
         shared: Asked::default(),
-        channels: channels.collect(),
+        channels,
     })?)
 }
 
@@ -96,11 +125,24 @@ pub(crate) fn period(rate: f64) -> Result<NonZeroU16> {
         .ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
 }
 
-/// Returns a copy of `options` in which the columns are the sources of the flight's channels.
-pub fn input(flight: &Flight, options: &InputOptions) -> InputOptions {
+/// Returns a copy of `options` that chooses the sources of the flight's channels: columns of a table, or topic and fields
+/// of a log. The sources are fields alone if `options` names their topic, or if they name none and the log's kind has a
+/// usual one.
+///
+/// # Errors
+/// Returns an error if the file cannot be opened.
+pub fn input(flight: &Flight, options: &InputOptions) -> Result<InputOptions> {
     let mut own = options.clone();
-    own.channel.columns = flight.channels.iter().map(|own| own.source.clone()).collect();
-    own
+    let sources: Vec<String> = flight.channels.iter().map(|own| own.source.clone()).collect();
+    let kind = if own.is_stdin() { None } else { flight_logs::Kind::of(&own.input)? };
+    let usual = kind.and_then(flight_logs::Kind::usual_topic);
+    let name_topics = sources.iter().all(|source| source.contains('.'));
+    if own.topic.is_some() || (usual.is_some() && !name_topics) {
+        own.channel.fields = sources;
+    } else {
+        own.channel.columns = sources;
+    }
+    Ok(own)
 }
 
 /// A source of samples. It converts the samples to the sensor's counts, and then filters them, as the flight's sender

@@ -2,6 +2,7 @@
 
 use crate::Result;
 use crate::brief::{brief, json};
+use crate::flight::{self, Filtering, Flight};
 use crate::input::InputOptions;
 use crate::measure::{Measure, Sums};
 use crate::passes::{First, each, pass};
@@ -11,6 +12,7 @@ use crate::trial::{Recording, Trial};
 use catalogue::run::{Asked, SampleType, Settings, Words};
 use serde::Serialize;
 use serde_json::Value;
+use spikewire::ConfigError;
 use std::collections::BTreeMap;
 
 /// The figures of a trial of one scheme on a recording.
@@ -86,6 +88,50 @@ pub struct Scored {
     pub notes: Vec<Words>,
     /// The figures of each scheme, or the reason that the scheme cannot encode the recording.
     pub schemes: Vec<(Scheme, Result<Figures>)>,
+}
+
+/// Scores the channels of a flight on a recording: as its sender encodes them, behind its filter. The error is that against
+/// the filtered signal, in the channels' units.
+///
+/// # Errors
+/// Returns an error if the recording cannot be read or lacks a channel, or if the scheme cannot encode it.
+pub fn score_flight(flight: &Flight, input: &InputOptions) -> Result<Vec<Scored>> {
+    let scheme = Scheme::from(flight.run_time());
+    let rate = flight.rate() as f32;
+    let mut all = Vec::new();
+    let recordings = Recording::read_all(&flight::input(flight, input)?)?;
+    for (recording, channel) in recordings.iter().zip(&flight.channels) {
+        let counts = channel.counts;
+        let mut heard = recording.filtered(|| |value| value * counts);
+        if let Some(filter) = flight.filter {
+            let start = |_| filter.start(flight.sample, rate);
+            let filters: Vec<Filtering> = heard
+                .segments
+                .iter()
+                .map(start)
+                .collect::<Result<_, ConfigError>>()
+                .map_err(catalogue::run::Error::from)?;
+            // A filter for each segment, as the sender starts anew after a gap.
+            let mut filters = filters.into_iter();
+            heard = heard.filtered(|| filters.next().unwrap_or_else(|| Box::new(|value| value)));
+        }
+        let trial = Trial::new(scheme, &flight.asked(channel), flight.sample, &heard)?;
+        let mut figures = Figures::of(&heard, &trial);
+        figures.rmse /= counts;
+        if (counts - 1.0).abs() > 0.0 {
+            figures.slope = None; // it is in counts
+        }
+        if flight.filter.is_some() {
+            let what = "the RMSE is that against the samples behind the flight's filter";
+            figures.notes.push(what.to_owned());
+        }
+        all.push(Scored {
+            channel: channel.name.clone(),
+            notes: recording.notes(),
+            schemes: vec![(scheme, Ok(figures))],
+        });
+    }
+    Ok(all)
 }
 
 /// Scores schemes on one channel of a recording. The file is read twice, in constant memory: the first pass finds mean,

@@ -1,11 +1,12 @@
 //! Encodes and decodes recordings in memory, in order to draw and score the results.
 
-use crate::Result;
+use crate::error::At;
 use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind, UnevenRate};
 use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
 use crate::slope::Slope;
 use crate::unit::known_unit;
+use crate::{Result, Spot};
 use catalogue::run::{Asked, Calibrated, Event, SampleType, Settings, Shape, Words};
 use std::ops::Range;
 
@@ -24,6 +25,8 @@ pub struct Recording {
     pub rate: Option<f64>,
     /// Name of the channel.
     pub name: String,
+    /// Name by which the channel is found in the log again: `TOPIC.FIELD`, or `name` in a table.
+    pub source: String,
     /// Unit of the samples, if the log gives it.
     pub unit: Option<String>,
     /// Number of samples that were missing or not finite.
@@ -42,7 +45,9 @@ impl Recording {
         let clock = Clock::new(&[], rate, STEPS);
         let segments = between(Vec::new(), values.len());
         let (times, notes) = (Vec::new(), Vec::new());
-        Self { values, times, segments, rate, name, unit: None, rejected: 0, clock, notes }
+        let source = name.clone();
+        let unit = None;
+        Self { values, times, segments, rate, name, source, unit, rejected: 0, clock, notes }
     }
 
     /// Reads a recording of one channel.
@@ -78,6 +83,7 @@ impl Recording {
         let finite = |row: usize| rows[..row].iter().filter(|row| **row).count();
         let segments = segments.into_iter().map(|own| finite(own.start)..finite(own.end));
         let segments: Vec<Range<usize>> = segments.filter(|own| !own.is_empty()).collect();
+        let topic = source.origin().iter().find(|(key, _)| *key == "topic").map(|(_, topic)| topic);
         let channels = all.kept(&rows).into_iter().zip(source.names()).zip(source.units());
         channels
             .map(|((values, name), unit)| {
@@ -92,6 +98,10 @@ impl Recording {
                     segments: segments.clone(),
                     rate: clock.rate(),
                     name: name.to_owned(),
+                    source: match topic {
+                        Some(topic) => format!("{topic}.{name}"),
+                        None => name.to_owned(),
+                    },
                     unit,
                     clock: clock.clone(),
                     notes: source.notes().to_vec(),
@@ -117,6 +127,7 @@ impl Recording {
             segments: self.segments.clone(),
             rate: self.rate,
             name: self.name.clone(),
+            source: self.source.clone(),
             unit: self.unit.clone(),
             rejected: self.rejected,
             clock: self.clock.clone(),
@@ -144,7 +155,7 @@ impl Recording {
     /// # Errors
     /// Returns an error that asks for the rate if the times of the recording contradict themselves.
     pub fn steady_rate(&self) -> Result<Option<f64>> {
-        self.clock.steady_rate()?;
+        self.clock.steady_rate().at(|| Spot::Part(self.name.clone()))?;
         Ok(self.rate)
     }
 

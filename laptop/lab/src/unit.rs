@@ -28,7 +28,7 @@ const WORDS: [(&[&str], &str); 8] = [
 /// Returns the unit of a channel, if its name shows the unit: by words such as `_dps` or `[m/s^2]`, or because the name is
 /// that of a field of a known format, such as `IMU.GyrX`.
 pub fn known_unit(name: &str) -> Option<&'static str> {
-    let name = name.to_ascii_lowercase();
+    let name = normal(name);
     let has = |part: &str| name.contains(part);
     let words: Vec<&str> = words(&name).collect();
     let is_shown = |own: &[&str]| words.windows(own.len()).any(|window| window == own);
@@ -62,6 +62,11 @@ pub fn known_unit(name: &str) -> Option<&'static str> {
     Some(unit)
 }
 
+/// Returns a name in lower case, in which `m/s^2` is written `m/s2`.
+fn normal(name: &str) -> String {
+    name.to_ascii_lowercase().replace("^2", "2")
+}
+
 /// Returns the words of a name: its letters and digits, without what is between them.
 fn words(name: &str) -> impl Iterator<Item = &str> {
     name.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty())
@@ -83,7 +88,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// Returns the axis that a name in lower case tells, if it is one of a gyroscope or an accelerometer. The axis is `x`,
+    /// Returns the axis that a [`normal`] name tells, if it is one of a gyroscope or an accelerometer. The axis is `x`,
     /// `y`, `z`, `0`, `1` or `2` at the end of the name, before the unit if there is one; `MAVLink` writes it first, as in
     /// `xgyro`.
     fn named(name: &str) -> Option<Self> {
@@ -98,11 +103,7 @@ impl Axis {
             return None;
         }
         let units = |word: &&str| UNITS.contains(word);
-        let mut all: Vec<&str> = words(name).collect();
-        // `m/s^2` ends in a word that may also be an axis: it is the unit's if an `s` stands before it.
-        if let [.., "s", "2"] = all[..] {
-            all.pop();
-        }
+        let all: Vec<&str> = words(name).collect();
         let last = all.iter().rfind(|word| !units(word))?;
         let is_mavlink = matches!(*last, "xgyro" | "ygyro" | "zgyro" | "xacc" | "yacc" | "zacc");
         let mut letters = last.chars();
@@ -145,7 +146,7 @@ impl Inertial {
     /// gives, and `largest` is the largest absolute sample. Returns `None` if the unit is unknown: if it is another than
     /// those of turn rates or accelerations, or if nothing tells it and the samples are too large for SI units.
     pub(crate) fn new(name: &str, unit: Option<&str>, largest: f64) -> Option<Self> {
-        let lower = name.to_ascii_lowercase();
+        let lower = normal(name);
         let axis = Axis::named(&lower)?;
         // Counts of an accelerometer, whose size only the log's head tells.
         if unit.is_none() && lower.contains("accsmooth") {
@@ -242,6 +243,7 @@ mod tests {
     #[test]
     fn a_unit_is_shown_by_words() {
         assert_eq!(known_unit("vx_m_s"), Some("m/s"));
+        assert_eq!(known_unit("v_m_s[2]"), Some("m/s"));
         assert_eq!(known_unit("gyro_x"), None);
         assert_eq!(known_unit("seg"), None);
     }

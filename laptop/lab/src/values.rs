@@ -43,6 +43,27 @@ impl From<Option<u32>> for Link {
     }
 }
 
+/// Relabels the sample type of a frame's keyframes for a receiver, which accepts only the decoders' type, `ours`.
+///
+/// The decoders use one type for all fixed-point types of a width, so their type may differ from the sender's. Then
+/// there are two cases. Keyframes labelled with the sender's type are correct. They get the decoders' type, and the
+/// receiver accepts them. Keyframes labelled with the decoders' type are wrong, because the sender has another type.
+/// They get the sender's type, and the receiver rejects them and counts them as misfits.
+pub fn with_kind<'f>(
+    received: &Received<'f>,
+    senders: SampleKind,
+    ours: SampleKind,
+) -> Received<'f> {
+    let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
+    let kind = match known {
+        Some(kind) if kind == senders => ours,
+        Some(kind) if kind == ours => senders,
+        _ => return *received,
+    };
+    let frame = received.frame.with_kind(kind).unwrap_or(received.frame);
+    Received { frame, ..*received }
+}
+
 /// Makes a receiver and passes it to `then`. `settings` holds the settings of each channel, or a single item for all
 /// channels.
 ///
@@ -238,8 +259,8 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
     one: f64,
     /// Sample type of the sender.
     kind: SampleKind,
-    /// Number of decoded values that were dropped because their channel does not exist. This number does not include
-    /// events beyond the receiver's `N` channels, which the receiver counts itself.
+    /// Number of events and keyframes whose channel is not among `channels`. This number does not include those beyond
+    /// the receiver's `N` channels, which the receiver counts itself.
     outside: u64,
     /// Length of a sub-timestep in µs; 0 if the length was not given.
     slot_ticks: u32,
@@ -254,28 +275,19 @@ struct Receiving<'a, P: Scheme, const N: usize, const EVENTS: usize> {
 }
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS> {
-    /// Relabels the sample type of a frame's keyframes for the receiver, which accepts only the decoders' type.
-    ///
-    /// The decoders use one type for all fixed-point types of a width, so their type may differ from the sender's. Then
-    /// there are two cases. Keyframes labelled with the sender's type are correct. They get the decoders' type, and the
-    /// receiver accepts them. Keyframes labelled with the decoders' type are wrong, because the sender has another
-    /// type. They get the sender's type, and the receiver rejects them and counts them as misfits.
-    fn in_our_type<'f>(&self, received: &Received<'f>) -> Received<'f> {
-        let ours = <P::Sample as Sample>::KIND;
-        let known = received.frame.keyframes().next().map(|keyframe| keyframe.kind);
-        let kind = match known {
-            Some(kind) if kind == self.kind => ours,
-            Some(kind) if kind == ours => self.kind,
-            _ => return *received,
-        };
-        let frame = received.frame.with_kind(kind).unwrap_or(received.frame);
-        Received { frame, ..*received }
-    }
-
     /// Returns for each channel whether its decoded value is exact: known to equal the encoder's value.
     fn exact(&self) -> [bool; N] {
         let is_exact = |channel| self.receiver.exact(channel as u16).is_some();
         std::array::from_fn(|channel| channel < self.channels && is_exact(channel))
+    }
+
+    /// Counts the frame's events and keyframes of channels that do not exist.
+    fn count_outside(&mut self, received: &Received<'_>) {
+        let keyframes = received.frame.keyframes().map(|keyframe| keyframe.address);
+        let addresses = keyframes.chain(received.frame.events().map(|event| event.address));
+        let missing = self.channels * self.neurons..N * self.neurons;
+        let outside = addresses.filter(|address| missing.contains(&usize::from(*address))).count();
+        self.outside += outside as u64;
     }
 
     /// Records the channels that have an event in the frame. Also records the tick, in µs, at which the sample of the
@@ -292,7 +304,7 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
     }
 
     /// Converts the decoded values to items, and appends the items to `items`. The first `keyframes` values come from
-    /// keyframes. A channel is exact if its decoded value is known to equal the encoder's value. `before` says for
+    /// keyframes. The keyframe of a sender with another fingerprint makes no value exact. A channel is exact if its decoded value is known to equal the encoder's value. `before` says for
     /// each channel whether the channel was exact before the frame.
     ///
     /// A channel may become exact in the middle of a frame. With a code that recovers by keyframes, all values of the
@@ -303,16 +315,12 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
         for (place, (channel, tick, value)) in self.decoded.drain(..).enumerate() {
             let at = usize::from(channel);
             let is_known = |exact: &[bool; N]| exact.get(at).is_some_and(|is_exact| *is_exact);
-            if at >= self.channels {
-                self.outside += 1;
-            } else if is_known(&self.has_fired) {
+            if at < self.channels && is_known(&self.has_fired) {
                 let by_keyframe = P::RECOVERY == Recovery::Keyframe;
-                let known = if place < keyframes {
-                    Known::Keyframe
-                } else if is_known(&after) && (by_keyframe || is_known(&before)) {
-                    Known::Exact
-                } else {
-                    Known::Estimate
+                let known = match is_known(&after) {
+                    true if place < keyframes => Known::Keyframe,
+                    true if by_keyframe || is_known(&before) => Known::Exact,
+                    _ => Known::Estimate,
                 };
                 self.has_exact |= known != Known::Estimate;
                 let address = (at * self.neurons) as u16;
@@ -340,7 +348,8 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
 
 impl<P: Scheme, const N: usize, const EVENTS: usize> Values for Receiving<'_, P, N, EVENTS> {
     fn apply(&mut self, received: &Received<'_>, items: &mut Vec<Item>) {
-        let received = &self.in_our_type(received);
+        let received = &with_kind(received, self.kind, <P::Sample as Sample>::KIND);
+        self.count_outside(received);
         if let Some(sender) = received.frame.fingerprint() {
             let own = self.known.unwrap_or_else(|| self.fingerprint(sender));
             if own != self.receiver.fingerprint() {

@@ -101,6 +101,8 @@ pub fn join(parts: &mut [&mut dyn Part]) -> Result<Joint, ConfigError> {
         joint.fingerprint = joint.fingerprint.and(part.fingerprint());
     }
     joint.fingerprint = joint.fingerprint.number(parts.len() as u32);
-    parts.iter_mut().for_each(|part| part.join(joint));
+    for part in parts {
+        part.join(joint);
+    }
     Ok(joint)
 }

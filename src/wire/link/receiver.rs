@@ -146,6 +146,22 @@ impl<'a, P: Scheme, const N: usize, const EVENTS: usize> Receiver<[&'a P; N], N,
     }
 }
 
+impl<'a, P: Scheme, const N: usize> Receiver<[&'a P; N], N> {
+    /// A receiver with a scheme for each channel, those of the sender, and room for the 32 events of a sample that are the
+    /// type's default. The compiler finds the number of channels by itself.
+    ///
+    /// ```
+    /// use spikewire::{link::Receiver, temporal::StepForward};
+    ///
+    /// static GYRO: StepForward<f32> = StepForward::new(0.1);
+    /// let receiver = Receiver::for_schemes([&GYRO; 6]);
+    /// assert_eq!(receiver.exact(5), None);
+    /// ```
+    pub fn for_schemes(schemes: [&'a P; N]) -> Self {
+        Self::with_schemes(schemes)
+    }
+}
+
 impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> {
     const ADDRESSES: usize = N * CodeOf::<T, N>::NEURONS;
     const HAS_KEYFRAMES: bool =

@@ -2,9 +2,10 @@
 
 use crate::checks::emulator;
 use crate::common::{paths, usage};
-use anyhow::{Context, Result};
-use std::fs;
-use std::io::{Write, stderr, stdout};
+use anyhow::{Context, Result, ensure};
+use std::fs::{self, File};
+use std::io::{Read, Write, stderr, stdout};
+use std::path::Path;
 
 const USAGE: &str = "\
 cargo xtask emulate IMAGE --part PART [--sensor SENSOR] [--seconds N] [--rtt] [TIME:FATE]...
@@ -35,11 +36,23 @@ pub fn emulate(args: &[String]) -> Result<()> {
         }
     }
     let (Some(image), Some(part)) = (image, part) else { return Err(usage(USAGE.to_owned())) };
+    ensure!(
+        emulator::PARTS.contains(&part),
+        "no part `{part}` is modelled; there are {}",
+        emulator::PARTS.join(", ")
+    );
+    ensure!(
+        emulator::SENSORS.contains(&sensor.unwrap_or(emulator::SENSORS[0])),
+        "no sensor `{}` is modelled; there are {}",
+        sensor.unwrap_or_default(),
+        emulator::SENSORS.join(", ")
+    );
     let seconds =
         seconds.parse().with_context(|| format!("`{seconds}` is no number of seconds"))?;
     let sensor = sensor.unwrap_or(if part == "crazyflie" { "bmi088" } else { "icm42688p" });
     let (image, directory) =
         (std::env::current_dir()?.join(image), paths::target().join("emulated/image"));
+    check_image(&image)?;
     _ = fs::remove_file(directory.join("uart")); // what an earlier image left
     let run = emulator::strictly(part, &image, sensor, seconds, &directory, &fates);
     // An image that ends in a fault has said something, too.
@@ -50,4 +63,35 @@ pub fn emulate(args: &[String]) -> Result<()> {
         stderr().write_all(emulator::log(&image, &directory)?.as_bytes())?;
     }
     run.map(drop)
+}
+
+/// Checks that an image is there, and is a program for a 32-bit Arm.
+fn check_image(image: &Path) -> Result<()> {
+    let name = image.display().to_string();
+    let mut start = Vec::new();
+    let file = File::open(image).with_context(|| name.clone())?;
+    file.take(20).read_to_end(&mut start).with_context(|| name.clone())?;
+    // The format's first bytes, for 32 bits and the lower byte first; and the number of Arm.
+    let is_image = start.starts_with(b"\x7fELF\x01\x01") && start.get(18..20) == Some(&[40, 0]);
+    ensure!(is_image, "{name}: not an ELF image for a 32-bit Arm, as `cargo build` writes");
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::emulate;
+
+    /// What cannot run is refused with a sentence, before the emulator starts.
+    #[test]
+    fn what_cannot_run_is_refused() {
+        let refused = |line: &str, words: &str| {
+            let args: Vec<String> = line.split(' ').map(str::to_owned).collect();
+            let error = format!("{:#}", emulate(&args).unwrap_err());
+            assert!(error.contains(words), "{line}: {error}");
+        };
+        refused("no-such-image --part stm32f405", "no-such-image: No such file");
+        refused("Cargo.toml --part stm32f405", "Cargo.toml: not an ELF image");
+        refused("Cargo.toml --part rp2350", "no part `rp2350` is modelled; there are rp2040,");
+        refused("Cargo.toml --part rp2040 --sensor mpu6050", "no sensor `mpu6050` is modelled");
+    }
 }

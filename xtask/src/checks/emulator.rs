@@ -52,6 +52,11 @@ const FILES: [&str; 13] = [
     "test_board.py",
 ];
 
+/// Parts of which there is a model.
+pub const PARTS: [&str; 5] = ["rp2040", "nrf52840", "stm32f405", "stm32h743", "crazyflie"];
+/// Sensors of which there is a model.
+pub const SENSORS: [&str; 3] = ["icm42688p", "bmi088", "bmi323"];
+
 /// The faults, each with the event that ends it.
 const BREAKS: [(&str, &str); 9] = [
     ("miso-cut", "mend"),

@@ -7,11 +7,17 @@ use crate::common::{paths, usage};
 use crate::products::parts::{BOARDS, Part};
 use crate::products::templates::{TEMPLATES, Template};
 use anyhow::{Context, Result, ensure};
+use spikewire_flight::{Flight, escaped};
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 use toml::{Table, Value};
+
+/// The templates' own reading of names and units.
+#[path = "../../../examples/flight/src/names.rs"]
+#[allow(dead_code, reason = "a template needs sizes of units, too")]
+mod names;
 
 pub const USAGE: &str = "cargo xtask new-firmware DIR --board NAME [--git URL]
 cargo xtask new-firmware DIR --hal NAME --flight FLIGHT.toml [--git URL]";
@@ -110,6 +116,7 @@ pub fn write_template(
     let read = |path: String| {
         fs::read_to_string(paths::examples().join(&path)).with_context(|| path.clone())
     };
+    check_flight(flight)?;
     let flight = fs::read_to_string(flight).with_context(|| flight.display().to_string())?;
     let mut manifest: Table = read(format!("templates/{hal}/Cargo.toml"))?.parse()?;
     from_origin(&mut manifest, directory, origin)?;
@@ -126,6 +133,30 @@ pub fn write_template(
         ("flight.toml", flight),
     ];
     write_files(directory, files)
+}
+
+/// Checks that a template can fly a flight's file: each channel has an axis of the sensor in its name and a known unit, and
+/// the sensor's counts become its samples. Otherwise the project's build would fail.
+fn check_flight(path: &Path) -> Result<()> {
+    let flight = Flight::read(path)?;
+    flight.check_units().map_err(|error| usage(format!("{}: {error}", path.display())))?;
+    let file = path.display();
+    ensure!(
+        matches!(flight.sample.to_string().as_str(), "f32" | "i16"),
+        "{file}: sample {} is not one that a sensor's counts become here; take f32 or i16",
+        flight.sample
+    );
+    for (index, channel) in flight.channels.iter().enumerate() {
+        let line = flight.line_of(index).unwrap_or(1);
+        let name = escaped(&channel.name);
+        let axis = names::axis(&channel.name).with_context(|| {
+            format!("{file}:{line}: `{name}` has no axis in its name, such as gyro_x or accel_z")
+        })?;
+        let is_known = names::unit(&channel.unit, axis < 3).is_some();
+        let units = if axis < 3 { "rad/s or deg/s" } else { "m/s² or g" };
+        ensure!(is_known, "{file}:{line}: the unit of `{name}` must be {units}");
+    }
+    Ok(())
 }
 
 /// Names the project, and finds this repository's packages elsewhere.
@@ -314,6 +345,26 @@ mod tests {
             let name = format!("name = \"{}\"", template.hal);
             assert!(manifest.contains(&name), "{manifest}");
         }
+    }
+
+    /// Whatever would fail the project's build is refused with its line, before anything is written.
+    #[test]
+    fn a_flight_that_no_template_flies_is_refused() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("flight.toml");
+        let head = "version = 1\nscheme = \"sf\"\nperiod = 2000\nparameters = { threshold = 1 }\n[[channel]]\n";
+        let refused = |channel: &str, words: &str| {
+            fs::write(&path, format!("{head}{channel}\n")).unwrap();
+            let project = directory.path().join("project");
+            let origin = Origin::Git("https://example.org/spikewire".into());
+            let error = write_template(&project, &TEMPLATES[0], &path, &origin).unwrap_err();
+            assert!(error.to_string().contains(words), "{channel}: {error}");
+            assert!(!project.exists());
+        };
+        refused("name = \"roll\"\nunit = \"rad/s\"", "flight.toml:5: `roll` has no axis");
+        refused("name = \"gyro_x\"\nunit = \"V\"", "must be rad/s or deg/s");
+        refused("name = \"gyro_x\"", "line 5: channel 0: unit is missing for \"gyro_x\"");
+        refused("name = \"acc_x\"\nunit = \"deg/s\"", "must be m/s² or g");
     }
 
     #[test]

@@ -240,7 +240,7 @@ const LONG: &[Step] = &[
     ),
     step!(
         "mutants",
-        "thousands of changes of the crates' code, compiled at once, each of which a test has to notice",
+        "thousands of changes of what flies or writes it, one after the other; a test has to notice each",
         mutants::mutants,
     ),
 ];

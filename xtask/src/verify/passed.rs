@@ -207,8 +207,7 @@ fn is_read(file: &str, entries: &BTreeSet<String>, manifests: &BTreeSet<String>)
         return true;
     }
     let parents = || file.match_indices('/').map(|(end, _)| &file[..=end]);
-    let package =
-        parents().filter(|parent| manifests.contains(*parent)).next_back().unwrap_or_default();
+    let package = parents().rfind(|parent| manifests.contains(*parent)).unwrap_or_default();
     entries.contains(file)
         || entries.contains("/")
         || parents().any(|parent| parent.len() >= package.len() && entries.contains(parent))

@@ -93,7 +93,7 @@ pub fn flight(flight: &Flight) -> String {
     let Flight { name, sample, names, counts, period, keyframe_every, bank, receiver } = flight;
     let list = |items: Vec<String>| items.join(", ");
     let (names, counts) = (
-        list(names.iter().map(|own| format!("{own:?}")).collect()),
+        list(names.iter().map(|name| literal(name)).collect()),
         list(counts.iter().map(|own| format!("{own:?}")).collect()),
     );
     let words = |layout: &Layout| layout.size.div_ceil(8).to_string();
@@ -108,6 +108,25 @@ pub fn flight(flight: &Flight) -> String {
         .replace("@RECEIVER@", &words(receiver))
         .replace("@NAMES@", &names)
         .replace("@COUNTS@", &counts)
+}
+
+/// A string literal in C and C++: letters beyond ASCII byte by byte, as the names of letters differ between versions of
+/// the languages; and no `?`, two of which may begin a trigraph.
+fn literal(text: &str) -> String {
+    let mut literal = String::from("\"");
+    for byte in text.bytes() {
+        match byte {
+            b'"' | b'\\' | b'?' => {
+                let _ = write!(literal, "\\{}", char::from(byte));
+            }
+            b' '..=b'~' => literal.push(char::from(byte)),
+            // Three digits, so that no digit after them is taken for one of them.
+            byte => {
+                let _ = write!(literal, "\\{byte:03o}");
+            }
+        }
+    }
+    literal + "\""
 }
 
 /// Rust that fails to compile for a target on which an end of a flight needs more storage than its header gives.
@@ -265,4 +284,23 @@ fn sizes_of(codec: &Description) -> String {
     let parts = [codec.codec, codec.encoder, codec.decoder, codec.code];
     let parts = parts.map(|Layout { size, align }| format!("({size}, {align})"));
     format!("{} => {}", codec.rust.1, parts.join(" "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::literal;
+
+    #[test]
+    fn names_are_literals_of_c() {
+        for (name, written) in [
+            ("gyro_x", r#""gyro_x""#),
+            ("e\u{301}1", r#""e\314\2011""#),
+            ("a\u{85}b", r#""a\302\205b""#),
+            ("\u{202e}x", r#""\342\200\256x""#),
+            ("x??/", r#""x\?\?/""#),
+            ("a\"\\\n%s", r#""a\"\\\012%s""#),
+        ] {
+            assert_eq!(literal(name), written);
+        }
+    }
 }

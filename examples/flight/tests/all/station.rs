@@ -168,8 +168,15 @@ fn channels_are_found_by_name_and_come_in_the_files_unit() {
     const COUNT: Sample = [16_384, -8_192, 1, 2_048, -4_096, 1];
     const SI: Channels<6> = Channels::new(
         COUNTS,
-        ["gyro_rad[0]", "gyroADC[1]", "rate_z", "accSmooth[0]", "accelerometer_m_s2[1]", "Accel Z"],
-        ["", "rad/s", "deg/s", "m/s²", "g", ""],
+        [
+            "gyro_rad[0]",
+            "gyroADC[1]",
+            "rate_z_dps",
+            "accSmooth[0]",
+            "accelerometer_m_s2[1]",
+            "Accel Z",
+        ],
+        ["rad/s", "rad/s", "deg/s", "m/s²", "g", "m/s/s"],
         [1.0, 1.0, 1.0, 1.0, 1.0, 10.0],
     );
     let close =

@@ -1,21 +1,23 @@
 //! Reads filters: by the name of a shape, as a list, or from a file.
 
 use std::fs;
+use std::path::Path;
 
 use spikewire::rate::Shape;
 
 use super::Value;
 use super::error::{ErrorKind, Result};
 
-/// Reads taps from a list or a file, or the name of a shape, which is checked.
+/// Reads taps from a list or a file, or the name of a shape, which is checked. The path of a file is relative to
+/// `directory`.
 ///
 /// # Errors
 /// Returns an error if there is no such shape or file, or if the list contains something else than numbers.
-pub(super) fn read(text: &str) -> Result<Value> {
+pub(super) fn read(text: &str, directory: &Path) -> Result<Value> {
     if let Some(taps) = shape(text) {
         return taps.map(|_| Value::Word(text.to_owned().into()));
     }
-    let taps = listed(text).map_or_else(|| from_file(text), Ok)?;
+    let taps = listed(text).map_or_else(|| from_file(&directory.join(text)), Ok)?;
     Ok(Value::Numbers(taps))
 }
 
@@ -75,9 +77,9 @@ fn positive(part: &'static str, text: &str) -> Result<f64> {
     }
 }
 
-fn from_file(path: &str) -> Result<Vec<f64>> {
+fn from_file(path: &Path) -> Result<Vec<f64>> {
     let text = fs::read_to_string(path).map_err(|error| ErrorKind::NoTaps { error })?;
-    let file = path.to_owned();
+    let file = path.display().to_string();
     let mut taps = Vec::new();
     for (line, content) in (1..).zip(text.lines()) {
         let words = content.split([',', ' ', '\t']).filter(|word| !word.is_empty());

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::fmt;
+use std::path::Path;
 
 use super::error::{Error, ErrorKind, Result};
 use super::filter;
@@ -108,10 +109,18 @@ impl Parameter {
     /// Returns an error if the text is not a value of this parameter's kind. The error has both, and says what is
     /// allowed.
     pub fn read(&self, text: &str) -> Result<Value> {
-        self.parsed(text).map_err(|kind| Error::of(Given::new(self.name, text), kind))
+        self.read_in(text, Path::new(""))
     }
 
-    fn parsed(&self, text: &str) -> Result<Value, ErrorKind> {
+    /// Parses a value in a file of `directory`, to which the path of a file of taps is relative.
+    ///
+    /// # Errors
+    /// See [`read`](Self::read).
+    pub fn read_in(&self, text: &str, directory: &Path) -> Result<Value> {
+        self.parsed(text, directory).map_err(|kind| Error::of(Given::new(self.name, text), kind))
+    }
+
+    fn parsed(&self, text: &str, directory: &Path) -> Result<Value, ErrorKind> {
         let list = || -> Option<Vec<f64>> {
             let numbers = text.strip_suffix(',').unwrap_or(text).split(',');
             numbers.map(|number| number.trim().parse().ok()).collect()
@@ -121,7 +130,7 @@ impl Parameter {
                 Ok(count) => Value::Count(count),
                 Err(_) => return Err(ErrorKind::NotWhole { min: 0, max: None }),
             },
-            Kind::Filter => filter::read(text).map_err(|error| error.kind)?,
+            Kind::Filter => filter::read(text, directory).map_err(|error| error.kind)?,
             Kind::Number | Kind::Text => match list() {
                 Some(numbers) if !text.contains(',') => Value::Number(numbers[0]),
                 Some(numbers) => Value::Numbers(numbers),

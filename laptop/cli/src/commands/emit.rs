@@ -1,10 +1,11 @@
 //! `spikewire emit`: writes source code for firmware, from a flight file (`flight.toml`) or from files of parameters.
 
+use crate::inputs::read_flight;
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand};
 use lab::coding::Coding;
 use lab::emit::{Codec, c_crate, c_flights};
-use lab::flight::{Flight, rust};
+use lab::flight::rust;
 use lab::output::Output;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -73,7 +74,7 @@ struct C {
 pub(crate) fn run(options: &Emit) -> Result<()> {
     let C { params, flight, output, spikewire } = match &options.language {
         Language::Rust(Rust { flight, output }) => {
-            let text = rust(&Flight::read(flight)?)?;
+            let text = rust(&read_flight(flight)?)?;
             let mut output = Output::open(output.as_deref(), flight)?;
             output.write_all(text.as_bytes())?;
             return Ok(output.finish()?);
@@ -81,7 +82,7 @@ pub(crate) fn run(options: &Emit) -> Result<()> {
         Language::C(c) => c,
     };
     if !flight.is_empty() {
-        let flights = flight.iter().map(|path| Ok((codec_name(path)?, Flight::read(path)?)));
+        let flights = flight.iter().map(|path| Ok((codec_name(path)?, read_flight(path)?)));
         let flights = flights.collect::<Result<Vec<_>>>()?;
         return Ok(c_flights(&flights, output, spikewire.as_deref())?);
     }

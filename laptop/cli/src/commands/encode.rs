@@ -28,7 +28,7 @@ pub(crate) struct Encode {
     coding: Coding,
     /// Flight file (`flight.toml`), as written by `advise -o`. The channels in the file are encoded exactly as the
     /// sender on the drone encodes them
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "topic", "field", "fields"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "field", "fields"])]
     flight: Option<PathBuf>,
     #[command(flatten)]
     input: InputOptions,

@@ -1,6 +1,6 @@
 //! `spikewire listen`: prints what a board sends, as events or as decoded values, while the bytes arrive.
 
-use crate::inputs::StreamOptions;
+use crate::inputs::{StreamOptions, read_flight};
 use crate::live::Live;
 use crate::options::{agreed, augment, given, option_group, schemes};
 use crate::panel::{Panel, Screen};
@@ -11,13 +11,14 @@ use catalogue::Parameter;
 use catalogue::run::{Asked, Known, SampleType, Settings, Worded};
 use clap::{Args, value_parser};
 use lab::coding::Coding;
-use lab::events::{EventReader, Format, LinkReader, Stream, Values, values_writer};
+use lab::events::{EventReader, Format, LinkReader, LinkTally, Stream, Values, values_writer};
 use lab::fit::rounding;
-use lab::flight::{self, Flight};
+use lab::flight;
 use lab::output::Output;
 use lab::port::{Bytes, Port};
 use lab::scheme::Scheme;
 use lab::values::with_receiver;
+use spikewire::link::Withheld;
 use std::cell::RefCell;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -73,7 +74,8 @@ pub(crate) struct Listen {
     /// it
     #[arg(long, value_name = "FILE", value_parser = crate::options::read)]
     params: Option<Coding>,
-    /// Flight file (`flight.toml`) from which the sender was made, as written by `advise -o`
+    /// Flight file (`flight.toml`) from which the sender was made, as written by `advise -o`. If the sender was made from
+    /// another one, no value is exact: the reason is printed, and the exit status is 2
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "slot_ticks"])]
     flight: Option<PathBuf>,
     /// Length in µs of the sender's sub-timesteps. Needed if the decoded value depends on the sub-timestep in which a
@@ -113,7 +115,7 @@ pub(crate) fn run(options: &Listen) -> Result<()> {
             bail!("--flight says all parameters");
         }
         options.check_formats("--flight")?;
-        let flight = Flight::read(path)?;
+        let flight = read_flight(path)?;
         let mut listened = Ok(());
         flight::with_receiver(&flight, |values| {
             listened = listen_to(options, values, flight.sample, || Panel::of_flight(&flight));
@@ -220,7 +222,18 @@ fn listen(
     if let Some(file) = file {
         file.finish()?;
     }
-    Ok(listened?)
+    listened?;
+    check_flight(options, stream.tally().link)
+}
+
+/// Checks that the sender is not one from another flight file than `--flight`, which makes no value exact.
+fn check_flight(options: &Listen, link: Option<LinkTally>) -> Result<()> {
+    match (&options.flight, link.and_then(|link| link.withheld)) {
+        (Some(path), Some(why @ (Withheld::Description { .. } | Withheld::Contradicted))) => {
+            bail!("{}: the sender is not made from this flight file: {why}", path.display())
+        }
+        _ => Ok(()),
+    }
 }
 
 impl Listen {

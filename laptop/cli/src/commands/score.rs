@@ -1,7 +1,7 @@
 //! `spikewire score`: counts a scheme's spikes, and measures how closely the values decoded from them follow the
 //! signal.
 
-use crate::inputs::{LogOptions, ManyChannels};
+use crate::inputs::{LogOptions, ManyChannels, as_file, read_flight};
 use crate::options::Coding;
 use crate::report::{Counts, Log, Report};
 use crate::words::{self, of_lab, tell_of};
@@ -9,12 +9,14 @@ use anyhow::{Result, bail};
 use catalogue::run::{Asked, SampleType};
 use clap::Args;
 use lab::dataset::Found;
+use lab::flight::Flight;
 use lab::output::Output;
 use lab::scheme::Scheme;
-use lab::score::{Figures, Scored, score};
+use lab::score::{Figures, Scored, score, score_flight};
 use lab::slope::Slope;
 use serde::Serialize;
 use std::io::Write;
+use std::path::PathBuf;
 
 /// Score one scheme on one channel of each log, or all schemes if `--scheme` is not given.
 ///
@@ -29,10 +31,15 @@ use std::io::Write;
 Examples:
   spikewire score --column gyro_x flight.csv
   spikewire score --scheme sf --threshold 0.1 --column gyro_x --json flight.csv
+  spikewire score --flight flight.toml flight.csv
   spikewire score --scheme sf --threshold 0.1 --split test spikes")]
 pub(crate) struct Score {
     #[command(flatten)]
     coding: Coding,
+    /// Flight file (`flight.toml`), as written by `advise -o`: scores each of its channels as the sender encodes it,
+    /// behind its filter
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scheme", "sample", "params", "column", "columns", "field", "fields", "channels_of"])]
+    flight: Option<PathBuf>,
     #[command(flatten)]
     logs: LogOptions,
     #[command(flatten)]
@@ -91,7 +98,13 @@ struct Summary {
 /// # Errors
 /// Returns an error if a recording or the parameters are invalid. The other logs are scored first.
 pub(crate) fn run(options: &Score) -> Result<()> {
-    let Score { coding, logs, channels, json } = options;
+    let Score { coding, flight, logs, channels, json } = options;
+    if let Some(flight) = flight {
+        if !coding.chosen()?.2.is_empty() {
+            bail!("--flight says all parameters");
+        }
+        return run_flight(&read_flight(flight)?, options);
+    }
     let (schemes, sample, parameters) = chosen(coding)?;
     let Found { logs, is_single, .. } = logs.find()?;
     let mut all = Vec::new();
@@ -122,6 +135,50 @@ pub(crate) fn run(options: &Score) -> Result<()> {
             Some((log, &*own.content.as_ref()?.schemes))
         });
         print_table(&rows.collect::<Vec<_>>(), &summary, !is_single)?;
+    }
+    counts.check()
+}
+
+/// Scores the channels of a flight, in a row each.
+///
+/// # Errors
+/// Returns an error if a recording is invalid. The other logs are scored first.
+fn run_flight(flight: &Flight, options: &Score) -> Result<()> {
+    let Score { logs, channels, json, .. } = options;
+    let Found { logs, is_single, .. } = logs.find()?;
+    let mut all = Vec::new();
+    for path in &logs {
+        let log = path.display().to_string();
+        let input = channels.channel.of(&as_file(path)?);
+        let scored = match score_flight(flight, &input) {
+            Ok(scored) => scored,
+            Err(error) => {
+                all.push(Log::refused(log, error.into(), is_single && !json)?);
+                continue;
+            }
+        };
+        for (index, scored) in scored.into_iter().enumerate() {
+            let channel = scored.channel.clone();
+            let (notes, content) = content(scored)?;
+            if !json {
+                // The notes on the recording are those of all its channels.
+                let of = (!is_single).then_some(&*log);
+                tell_of(of, if index == 0 { &notes } else { &[] });
+                tell_of(Some(&channel), &content.notes());
+            }
+            let name = if is_single { channel } else { format!("{log} {channel}") };
+            all.push(Log { log: name, refused: None, notes, content: Some(content) });
+        }
+    }
+    // Each log has an entry for each channel.
+    let counts = Counts { logs: logs.len(), ..Counts::of(&all) };
+    if *json {
+        let summary = Summary { counts, schemes: Vec::new() };
+        Report { command: "score", logs: &all, summary }.print()?;
+    } else {
+        let rows = all.iter().filter_map(|own| Some((&*own.log, &*own.content.as_ref()?.schemes)));
+        let summary = Summary { counts, schemes: Vec::new() };
+        print_table(&rows.collect::<Vec<_>>(), &summary, false)?;
     }
     counts.check()
 }

@@ -11,7 +11,7 @@ use catalogue::run::{Asked, SampleType, Worded};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::dataset::Found;
-use lab::flight::of_rows;
+use lab::flight::{TunedChannel, of_rows};
 use lab::output::Output;
 use lab::plot::draw_fronts;
 use lab::plot::front::Panel;
@@ -323,22 +323,28 @@ impl Tune {
     /// Returns the text of a flight file (`flight.toml`) with the settings found for each channel.
     ///
     /// # Errors
-    /// Returns an error if the first log has no sample rate, or if the channels cannot share a flight file, for example
+    /// Returns an error if the first log has no sample rate, if its times contradict themselves, or if the channels cannot share a flight file, for example
     /// because two have the same name.
     fn flight(
         &self,
         request: &TuneRequest,
         results: &[(Cut, Vec<(Scheme, Row)>)],
     ) -> Result<String> {
-        let rows: Vec<(&str, Scheme, &Row)> = results
-            .iter()
-            .filter_map(|(cut, rows)| rows.first().map(|(scheme, row)| (&*cut.name, *scheme, row)))
-            .collect();
-        let rate =
-            request.logs.first().and_then(|log| log.first()).and_then(|recording| recording.rate);
+        let mut rows = Vec::new();
+        for (cut, found) in results {
+            let Some((scheme, row)) = found.first() else { continue };
+            let name = cut.name.as_str();
+            let recording = request.logs.iter().flatten().find(|recording| recording.name == name);
+            let source = recording.map_or(name, |recording| recording.source.as_str());
+            rows.push(TunedChannel { name, source, scheme: *scheme, row });
+        }
+        let rate = match request.logs.first().and_then(|log| log.first()) {
+            Some(recording) => recording.steady_rate()?,
+            None => None,
+        };
         let flight =
             of_rows(&rows, self.sample, rate.context("a flight needs the rate of its log")?)?;
-        let comments = rows.iter().flat_map(|(name, _, row)| row.comments(name));
+        let comments = rows.iter().flat_map(|channel| channel.row.comments(channel.name));
         Ok(flight.to_toml(&comments.collect::<Vec<_>>()))
     }
 

@@ -10,7 +10,8 @@ use spikewire_flight::Flight;
 use std::{env, error::Error, fmt::Write, fs, path::Path};
 
 /// Flights whose bits `tests/both_ends.rs` compares.
-const FLOWN: [&str; 6] = ["asf", "first_order", "grf_slots", "notch", "sf", "sod"];
+const FLOWN: [&str; 9] =
+    ["asf", "asf_q16_16", "first_order", "grf_slots", "notch", "sf", "sf_q2_14", "sod", "sod_i32"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let directory = env::args().nth(1).ok_or("no directory")?;
@@ -29,8 +30,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut table = String::new();
     for (name, text, kinds) in flights {
         let flight = Flight::parse(&text)?;
-        let (scheme, one, fingerprint) =
-            (flight.scheme.name, flight.sample.one(), flight.fingerprint());
+        let (scheme, fingerprint) = (flight.scheme.name, flight.fingerprint());
+        let step = flight.sample.step();
+        let one = if step > 0.0 { 1.0 / step } else { 1.0 };
         writeln!(table, "{name} {scheme} {one} {} {kinds}", fingerprint.bits())?;
         fs::write(directory.join(name).with_extension("toml"), text)?;
     }

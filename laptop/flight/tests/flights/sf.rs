@@ -17,9 +17,15 @@ pub mod flight {
     pub type Code = spikewire::filter::Filtered<spikewire::filter::Biquad<fixed::types::I8F8>, spikewire::temporal::StepForward<fixed::types::I8F8>>;
 
     /// Scheme with the parameters of gyro_x, gyro_y, gyro_z.
+    /// Rounded: gyro_x: threshold 0.1 is 0.1015625 in q8.8.
+    /// Rounded: gyro_y: threshold 0.1 is 0.1015625 in q8.8.
+    /// Rounded: gyro_z: threshold 0.1 is 0.1015625 in q8.8.
     static SCHEME_0: Code = spikewire::filter::Biquad::low_pass(80.0, 1000.0).before(spikewire::temporal::StepForward::new(fixed::types::I8F8::from_bits(26)));
 
     /// Scheme with the parameters of accel_x, accel_y, accel_z.
+    /// Rounded: accel_x: threshold 0.3 is 0.30078125 in q8.8.
+    /// Rounded: accel_y: threshold 0.3 is 0.30078125 in q8.8.
+    /// Rounded: accel_z: threshold 0.3 is 0.30078125 in q8.8.
     static SCHEME_1: Code = spikewire::filter::Biquad::low_pass(80.0, 1000.0).before(spikewire::temporal::StepForward::new(fixed::types::I8F8::from_bits(77)));
 
     /// Scheme of each channel.

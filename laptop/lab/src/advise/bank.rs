@@ -329,7 +329,7 @@ fn bank(
         shared.iter().for_each(|(name, _)| asked.unset(name));
         parts.push(Channel {
             name: recording.name.clone(),
-            source: recording.name.clone(),
+            source: recording.source.clone(),
             unit: advice.unit(),
             counts: 1.0,
             asked,

@@ -144,7 +144,8 @@ impl Row {
     /// duration are rounded to 6 decimals, so that they stay the same when the row is written and read again.
     pub(super) fn take(&mut self, clock: &Clock) {
         let rounded = |number: f64| (number * 1e6).round() / 1e6;
-        self.rate = clock.rate().map(rounded);
+        // A rate that the times contradict is not written; the notes say why.
+        self.rate = clock.rate().filter(|_| clock.uneven().is_none()).map(rounded);
         self.seconds = rounded(clock.seconds());
         self.gaps = clock.gaps();
         self.steps_back = clock.steps_back();

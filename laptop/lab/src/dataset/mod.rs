@@ -335,7 +335,7 @@ pub fn read<T>(
 ) -> Result<T> {
     let mut channel = channel.clone();
     if kind.is_some() {
-        (channel.delimiter, channel.rate) = (None, None);
+        (channel.delimiter, channel.header, channel.rate) = (None, None, None);
     }
     if kind == Some(Kind::Ulog) {
         (channel.time, channel.time_unit) = (None, None);

@@ -65,6 +65,7 @@ impl EventReader for LinkReader<'_> {
             lost: reader.lost_frames().into(),
             bad_checksums: reader.bad_checksums().into(),
             repeated: reader.repeated().into(),
+            late: reader.late().into(),
             ..self.tally
         };
         if let Some(values) = &self.values {

@@ -33,6 +33,8 @@ pub struct LinkTally {
     pub bad_checksums: u64,
     /// Number of frames that arrived twice.
     pub repeated: u64,
+    /// Number of frames that came after later ones, or from a sender before the present one. They are left out.
+    pub late: u64,
     /// Number of frames in which the sender reports that it lost events before the frame.
     pub after_loss: u64,
     /// Number of times that the sender started or restarted. The start before the first received frame counts only if
@@ -66,6 +68,14 @@ pub struct Held {
     pub contradicted: u64,
 }
 
+impl LinkTally {
+    /// Returns whether frames seem to come from two senders in turn: the reader then follows one of them, and leaves out
+    /// the frames of the other as late.
+    pub fn has_two_senders(&self) -> bool {
+        self.late >= 16 && self.late * 8 > self.frames
+    }
+}
+
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.word(f, quoted)
@@ -87,6 +97,10 @@ impl Worded for Tally {
                 link.keyframes
             )?;
             let rare = [
+                (
+                    link.late,
+                    "frames came late, after later ones or another sender's, and were left out",
+                ),
                 (link.after_loss, "frames before which the sender lost events"),
                 (link.impossible, "frames with events that cannot be"),
                 (link.outside, "events and keyframes at addresses without a decoder"),
@@ -95,8 +109,16 @@ impl Worded for Tally {
             for (count, what) in rare.into_iter().filter(|(count, _)| *count > 0) {
                 writeln!(f, "{count} {what}")?;
             }
+            if link.has_two_senders() {
+                writeln!(
+                    f,
+                    "are there two senders on the line? Frames of two sessions came in turn"
+                )?;
+            }
             let (unused, scheme) = (link.unused_keyframes, spell("scheme"));
-            if unused > 0 {
+            // The fingerprint tells what these only suggest.
+            let is_other = matches!(link.withheld, Some(Withheld::Description { .. }));
+            if unused > 0 && !is_other {
                 let what = "keyframes, which this scheme does not have";
                 writeln!(f, "{unused} {what}: is {scheme} the sender's?")?;
             }
@@ -104,7 +126,7 @@ impl Worded for Tally {
                 writeln!(f, "no value is exact: {why}")?;
             }
             let Held { compared, contradicted } = link.held;
-            if contradicted > 0 {
+            if contradicted > 0 && !is_other {
                 writeln!(
                     f,
                     "{contradicted} of {compared} keyframes contradict the values before them: \

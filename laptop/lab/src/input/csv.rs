@@ -180,6 +180,8 @@ impl Table {
             notes.push("the line below the header holds units".into());
             of_units = units;
         }
+        // The names of other formats than text stand in no row.
+        header.retain(|_| above == 0);
         let count = ahead.len();
         ahead.retain(|row| !header.contains(row));
         let repeated = (count - ahead.len()) as u64;

@@ -134,7 +134,7 @@ impl Start {
         let delimiter = asked.or(self.separator).unwrap_or_else(|| self.delimiter());
         let second = self.text[self.next..].split(|byte| *byte == b'\n').next().unwrap_or_default();
         if second.trim_ascii().is_empty() || self.is_followed_by_comment() {
-            return second.is_empty();
+            return self.next == self.text.len();
         }
         let first = split(&self.text[self.line..self.next], delimiter);
         let second = split(second, delimiter);

@@ -147,6 +147,10 @@ kinds! {
             if *has_bias { ", one of them the bias," } else { "" },
             inputs + senders
         ),
+        Spikes { layer: String, inputs: usize, most: usize } => (
+            "{layer} takes spikes of {inputs} inputs and own neurons, and with weights of 8 bits {most} at most; f32 has no \
+             such limit"
+        ),
         Size { inputs: usize, neurons: usize, most: usize } =>
             ("{inputs} inputs and {neurons} neurons, of which {most} are the most"),
         Number { number: f64 } =>

@@ -4,6 +4,7 @@ use crate::Result;
 use crate::coding::Coding;
 use crate::scheme::Scheme;
 use catalogue::run::{Constant, Settings};
+use spikewire_flight::escaped;
 
 /// Writes settings as a Rust constant, with `comments` before it. The constant is named after the channel, and compiles
 /// where the crate `spikewire` is a dependency.
@@ -17,7 +18,8 @@ pub fn rust(
     settings: &Settings,
 ) -> Result<String> {
     let Constant { scheme: kind, value } = scheme.constant(settings)?;
-    let comments: Vec<String> = comments.iter().map(|line| format!("/// {line}\n")).collect();
+    let comments: Vec<String> =
+        comments.iter().map(|line| format!("/// {}\n", escaped(line))).collect();
     let name = constant_name(channel);
     // One long line, left to the formatter of whoever pastes it.
     Ok(format!("{}pub static {name}: {kind} = {value};\n", comments.concat()))

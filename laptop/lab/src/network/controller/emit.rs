@@ -17,6 +17,14 @@ pub(super) trait Spelled: Number {
 
     fn spell(self) -> String;
     fn spell_factor(factor: Self::Factor) -> String;
+    /// Returns the bits of a number, as `spikewire-network` adds them to a checksum.
+    fn word(self) -> u32;
+    /// Returns the bits of a decay.
+    fn word_of_factor(factor: Self::Factor) -> u32;
+    /// Returns the words of rows of weights and of their shift.
+    fn words_of_weights(rows: &[&[Self]], shift: u32) -> Vec<u32>;
+    /// Returns the next smaller number.
+    fn below(self) -> Self;
     /// Returns the Rust source that constructs a matrix of weights with these rows. The source holds integer weights
     /// without their `shift` low bits, which are 0.
     fn spell_weights(rows: &[&[Self]], shift: u32) -> String;
@@ -35,6 +43,22 @@ impl Spelled for f32 {
         factor.spell()
     }
 
+    fn word(self) -> u32 {
+        self.to_bits()
+    }
+
+    fn word_of_factor(factor: Self) -> u32 {
+        factor.to_bits()
+    }
+
+    fn words_of_weights(rows: &[&[Self]], _: u32) -> Vec<u32> {
+        rows.iter().flat_map(|row| row.iter()).map(|weight| weight.to_bits()).collect()
+    }
+
+    fn below(self) -> Self {
+        self.next_down()
+    }
+
     fn spell_weights(rows: &[&[Self]], _: u32) -> String {
         format!("Weights::new(&[\n{}])", spell_rows(rows, Spelled::spell))
     }
@@ -50,6 +74,24 @@ impl Spelled for i32 {
 
     fn spell_factor(factor: u32) -> String {
         factor.to_string()
+    }
+
+    fn word(self) -> u32 {
+        self.cast_unsigned()
+    }
+
+    fn word_of_factor(factor: u32) -> u32 {
+        factor
+    }
+
+    fn words_of_weights(rows: &[&[Self]], shift: u32) -> Vec<u32> {
+        // In flash a weight is a byte that is 128 above it.
+        let bytes = rows.iter().flat_map(|row| row.iter()).map(|weight| (weight >> shift) + 128);
+        bytes.map(i32::cast_unsigned).chain([1 << shift]).collect()
+    }
+
+    fn below(self) -> Self {
+        self.saturating_sub(1)
     }
 
     fn spell_weights(rows: &[&[Self]], shift: u32) -> String {
@@ -90,7 +132,7 @@ pub(super) fn emit<K: Spelled>(
             "\n/// For each output, the value of a potential of 1, in the units of the trained network.\npub const UNITS: [f32; {count}] = [{units}];\n"
         );
     }
-    body += &checked(net, check);
+    body += &checked(net, shifts, check);
     let Remarks { source, inputs, step_us } = remarks;
     let every = step_us.map_or(String::new(), |step| format!(" A step: {step} µs."));
     let words: BTreeSet<&str> = body.split(|c: char| !c.is_alphanumeric()).collect();
@@ -260,9 +302,52 @@ pub static NETWORK: Trained = {value};
     )
 }
 
-/// Returns the Rust source of the self-test before arming: input spikes, the spikes and potentials that must result,
-/// and the function `is_intact`, which runs the steps and compares the results.
-fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
+/// Returns the checksum over words, as `spikewire-network` computes it.
+fn checksum(words: impl IntoIterator<Item = u32>) -> u32 {
+    let add = |sum: u32, word: u32| (sum.rotate_left(5) ^ word).wrapping_mul(0x9E37_79B1);
+    words.into_iter().fold(0, add)
+}
+
+/// Returns the checksum over the weights and neurons of a layer.
+fn checksum_of<K: Spelled>(layer: &Layer<K>, shift: u32) -> u32 {
+    let rows: Vec<&[K]> = layer.weights.iter().map(Vec::as_slice).collect();
+    let mut words = K::words_of_weights(&rows, shift);
+    match &layer.own {
+        Recurrent::None => {}
+        Recurrent::Full(own) => {
+            let rows: Vec<&[K]> = own.iter().map(Vec::as_slice).collect();
+            words.extend(K::words_of_weights(&rows, shift));
+        }
+        Recurrent::OneToOne(own) => words.extend(K::words_of_weights(&[own], shift)),
+    }
+    // A number that equals the constructor's own value is not spelled: 0 in place of a negative 0.
+    let or = |number: K, usual: K| if number == usual { usual } else { number };
+    let (rule, zero) = (&layer.rule, K::default());
+    for neuron in &layer.neurons {
+        let mut bias = neuron.bias;
+        if let Some(current) = neuron.current {
+            words.extend([K::word_of_factor(current), or(bias, zero).word()]);
+            bias = neuron.inner;
+        }
+        words.extend([K::word_of_factor(neuron.decay), or(bias, zero).word()]);
+        if let Some(spike) = neuron.spike {
+            let usual = if rule.reset.subtracts() { spike.threshold } else { zero };
+            let reset = if rule.reset == Reset::NoReset { usual } else { or(spike.reset, usual) };
+            let is_at = rule.fires == Fires::At;
+            let threshold = if is_at { spike.threshold.below() } else { spike.threshold };
+            words.extend([threshold.word(), reset.word()]);
+        }
+    }
+    checksum(words)
+}
+
+/// Returns the Rust source of the self-test before arming: a checksum, input spikes, the spikes and potentials that must
+/// result, and the function `is_intact`, which runs the steps and compares the results.
+fn checked<K: Spelled>(net: &Net<K>, shifts: &[u32], inputs: &Trains) -> String {
+    let sums = net.layers.iter().enumerate();
+    let sums = sums.map(|(at, layer)| checksum_of(layer, shifts.get(at).copied().unwrap_or(0)));
+    // A chain adds up the checksums of its two parts, as it nests them.
+    let sum = sums.reduce(|first, next| checksum([first, next])).unwrap_or(0);
     let done = net.run(inputs);
     let (steps, layers) = (inputs.len(), net.layers.len());
     let spikes = |fired: &[u16]| format!("&[{}]", list(fired.iter()));
@@ -288,7 +373,10 @@ fn checked<K: Spelled>(net: &Net<K>, inputs: &Trains) -> String {
     let compared = compared.collect::<Vec<_>>().join("\n            && ");
     let numbers = K::TYPE;
     format!(
-        "\n/// Steps from rest: for each step, the inputs that fire, and the neurons of each layer that must then fire.
+        "\n/// Checksum over the weights and neurons.
+pub const CHECKSUM: u32 = {sum:#010x};
+
+/// Steps from rest: for each step, the inputs that fire, and the neurons of each layer that must then fire.
 #[rustfmt::skip]
 static STEPS: [(&[u16], [&[u16]; {layers}]); {steps}] = [
 {rows}];
@@ -297,9 +385,12 @@ static STEPS: [(&[u16], [&[u16]; {layers}]); {steps}] = [
 #[rustfmt::skip]
 static POTENTIALS: [{numbers}; {outputs}] = [{last}];
 
-/// Returns whether {steps} steps give the known spikes and potentials, bit by bit. If not, the flash, the compiler or
-/// the core has altered the network: do not arm.
+/// Returns whether weights and neurons have their checksum, and {steps} steps, in which every input fires, give the known
+/// spikes and potentials, bit by bit. If not, the flash, the compiler or the core has altered the network: do not arm.
 pub fn is_intact() -> bool {{
+    if NETWORK.checksum() != CHECKSUM {{
+        return false;
+    }}
     let mut state = NETWORK.state();
     let spikes_are = STEPS.iter().all(|(inputs, [{names}])| {{
         NETWORK.step(&mut state, inputs);

@@ -24,6 +24,7 @@ use net::{Done, Net, Recurrent};
 use number::Number;
 use quantise::Integers;
 use serde::Deserialize;
+use std::collections::BTreeSet;
 
 /// A network in double precision, in the form that `spikewire-network` runs. Its parameters, such as decay factors,
 /// apply to one time step.
@@ -184,6 +185,9 @@ impl Flown {
 /// Returns an error if the converted network cannot be run on the recordings.
 pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     let ControllerRequest { model, numbers, tuned, held_out, progress } = *request;
+    if numbers == Numbers::Integer {
+        check_spikes(&model.net)?;
+    }
     let original = model.original(tuned);
     let mut notes = model.notes.clone();
     notes.extend(model.net.rules());
@@ -204,10 +208,12 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     if saturated > 0 {
         notes.push(format!("warning: {saturated} potentials or currents left their range"));
     }
-    let check = match &held {
+    let mut check = match &held {
         Held::Float(net) => liveliest(net, tuned),
         Held::Integer(integers) => liveliest(&integers.net, tuned),
     };
+    let inputs = model.net.layers.first().map_or(0, net::Layer::inputs);
+    check.extend(firing_others(&check, inputs));
     let network: Box<dyn OnChip> = Box::new(OnController { held, notes, check });
     let held_out = held_out
         .map(|all| figures(&model.original(all.steps), &*network, all.steps, all.from))
@@ -229,6 +235,29 @@ fn liveliest<K: Number>(net: &Net<K>, inputs: &Trains) -> Trains {
         (counts.last().copied().unwrap_or(0).min(1), counts.iter().sum::<usize>())
     };
     windows.max_by_key(lively).unwrap_or_default().to_vec()
+}
+
+/// Checks that no layer takes more spikes in a step than `spikewire-network` adds with weights of 8 bits.
+fn check_spikes(net: &Net<f64>) -> Result<()> {
+    const MOST: usize = 4096;
+    for layer in &net.layers {
+        let own = if matches!(layer.own, Recurrent::Full(_)) { layer.neurons.len() } else { 0 };
+        let inputs = layer.inputs() + own;
+        if inputs > MOST {
+            return Err(FitKind::Spikes { layer: layer.name.clone(), inputs, most: MOST }.into());
+        }
+    }
+    Ok(())
+}
+
+/// Returns steps in which each input fires that does not fire in these: up to 16 inputs in a step, so that the network
+/// stays as lively as before.
+fn firing_others(steps: &Trains, inputs: usize) -> Trains {
+    const TOGETHER: usize = 16;
+    let fired: BTreeSet<u16> = steps.iter().flatten().copied().collect();
+    let others: Vec<u16> =
+        (0..inputs).map(|input| input as u16).filter(|input| !fired.contains(input)).collect();
+    others.chunks(TOGETHER).map(<[u16]>::to_vec).collect()
 }
 
 impl OnController {
@@ -273,7 +302,7 @@ fn bytes<K: Number>(net: &Net<K>, weight: usize) -> (usize, usize) {
         let neuron = if fires { 16 } else { 8 } + if has_current { 8 } else { 0 };
         flash += (layer.inputs() * count + own) * weight + count * neuron;
         let list = (2 * count).next_multiple_of(4) + 8;
-        ram += count * if has_current { 8 } else { 4 } + list + 8;
+        ram += count * if has_current { 8 } else { 4 } + list + 16;
     }
     (flash, ram)
 }
