@@ -807,3 +807,22 @@ fn what_must_not_wait_does_not() {
         assert_eq!(next(None, 15_000), waits);
     }
 }
+
+/// A frame begins where its buffer does, as a sink that knows its length alone takes for granted.
+#[test]
+fn a_frame_begins_with_its_buffer() {
+    let coding = Coding::for_channels(40, 1_000);
+    let mut link = Transmitter::new(coding, Session::counted(1));
+    for number in 0..60_u32 {
+        let tick = Tick::from(number * 1_000);
+        let events = (0..number as u16).map(|address| {
+            let event = Event { tick, address: address % 40, polarity: Polarity::Up };
+            Item::from(event)
+        });
+        let beat = [Item::Heartbeat { tick, address: 0 }];
+        let items = beat.into_iter().chain(events);
+        let mut buffer = [0; MAX_FRAME];
+        let frame = link.next_frame(FromItems(items), &mut buffer).unwrap().unwrap().to_vec();
+        assert_eq!(frame, buffer[..frame.len()], "{number}");
+    }
+}

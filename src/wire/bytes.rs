@@ -40,14 +40,26 @@ impl<'a> Cursor<'a> {
         Some(())
     }
 
-    /// The bytes written from here on.
-    pub(crate) fn slice_from(&self, from: usize) -> &[u8] {
-        self.bytes.get(from..self.written).unwrap_or_default()
+    /// The bytes written.
+    pub(crate) fn as_slice(&self) -> &[u8] {
+        self.bytes.get(..self.written).unwrap_or_default()
     }
 
-    /// The bytes written from here on, for the lifetime of the buffer.
-    pub(crate) fn into_slice_from(self, from: usize) -> &'a [u8] {
-        self.bytes.get(from..self.written).unwrap_or_default()
+    /// The bytes written, for the lifetime of the buffer.
+    pub(crate) fn into_slice(self) -> &'a [u8] {
+        self.bytes.get(..self.written).unwrap_or_default()
+    }
+
+    /// Inserts a byte before one that is written, beyond the limit if need be; nothing if the buffer is full.
+    pub(crate) fn insert(&mut self, at: usize, byte: u8) {
+        let end = self.written.saturating_add(1);
+        if let Some(moved) = self.bytes.get_mut(at..end) {
+            let mut carried = byte;
+            for slot in moved {
+                core::mem::swap(slot, &mut carried);
+            }
+            self.written = end;
+        }
     }
 
     /// Replaces a byte already written.

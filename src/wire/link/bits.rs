@@ -142,9 +142,9 @@ impl<'a> BitWriter<'a> {
         &mut self.bytes
     }
 
-    /// The bytes written from here on, for the lifetime of the buffer.
-    pub(super) fn into_slice_from(self, from: usize) -> &'a [u8] {
-        self.bytes.into_slice_from(from)
+    /// The bytes written, for the lifetime of the buffer.
+    pub(super) fn into_slice(self) -> &'a [u8] {
+        self.bytes.into_slice()
     }
 }
 

@@ -45,8 +45,8 @@ pub(super) mod short {
     pub(in crate::wire::link) const KEYFRAMES: u8 = 0x10;
     /// The low bits, 1 less than the length, or that a byte with the length follows.
     pub(in crate::wire::link) const LENGTH: u8 = 0x0F;
-    /// The most bytes before the payload: the first, the length and the number.
-    pub(in crate::wire::link) const HEADER: usize = 3;
+    /// The bytes before the payload: the first and the number, between which a length may stand.
+    pub(in crate::wire::link) const HEADER: usize = 2;
 
     /// Whether a short frame may begin with this byte.
     #[inline]
@@ -183,13 +183,13 @@ impl Head {
     }
 
     fn read_short(bytes: &[u8], first: u8, known: &Known) -> Result<Self, LinkError> {
-        let least = LinkError::Truncated { needed: short::HEADER, found: bytes.len() };
+        let least = LinkError::Truncated { needed: short::HEADER + 1, found: bytes.len() };
         let &[_, second, third, ..] = bytes else { return Err(least) };
         let length = first & short::LENGTH;
         let (length, number, header) = if length < short::LENGTH {
-            (usize::from(length) + 1, second, short::HEADER - 1)
+            (usize::from(length) + 1, second, short::HEADER)
         } else if second > short::LENGTH {
-            (usize::from(second), third, short::HEADER)
+            (usize::from(second), third, short::HEADER + 1)
         } else {
             return Err(LinkError::Header);
         };

@@ -3,7 +3,7 @@
 use super::frame::{Head, MAGIC, short};
 use super::known::Known;
 use super::time::Time;
-use super::{FrameView, LinkError, MIN_FRAME, session};
+use super::{Coding, FrameView, LinkError, MIN_FRAME, session};
 
 /// A gap in the numbers: frames that are missing between two that arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ impl Received<'_> {
 /// - **A session that is used again**, as where a sender's supply fails before its start was counted, begins anew where it
 ///   shows: by another first frame than that delivered, or one that comes more than sixteen frames late, by other bytes of the frame delivered last, by a time that goes
 ///   back by more than 65.5 ms while numbers rise or the other way round, or by sixteen late frames in a row.
-/// - **Memory:** `N + 152` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
+/// - **Memory:** about `N + 204` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
 /// - **Delay:** none; a frame whose length was damaged, or whose end is missing, may delay the frames in the 255 bytes
 ///   after it, which on a quiet link are several keyframes: see [`next_after_silence`](Self::next_after_silence).
@@ -277,7 +277,10 @@ impl<const N: usize> Reader<N> {
                     let counter = match self.standing(&frame, head.checksum) {
                         Standing::Repeated => &mut self.repeated,
                         Standing::Late | Standing::Stray => {
-                            self.strays = self.strays.saturating_add(1);
+                            // Where short frames cannot be read either, their sender is likely another start.
+                            let weight =
+                                if self.has_told && !head.is_short() { RETURN / 2 } else { 1 };
+                            self.strays = self.strays.saturating_add(weight);
                             &mut self.late
                         }
                         standing => return Some((head, standing)),
@@ -305,11 +308,10 @@ impl<const N: usize> Reader<N> {
                     let skipped = next.map_or(bytes.len(), |next| next.wrapping_add(1));
                     self.start = self.start.wrapping_add(skipped);
                     self.skipped = self.skipped.saturating_add(skipped as u32);
-                    if let Some(known) = &self.known
-                        && is_short
-                        && !self.has_told
-                    {
+                    if is_short && !self.has_told {
                         self.has_told = true;
+                        let nothing = Known::nothing(Coding::for_channels(1, 1));
+                        let known = self.known.as_ref().unwrap_or(&nothing);
                         return Some((Head::unread(known), Standing::Unread));
                     }
                 }

@@ -15,13 +15,12 @@ use crate::{ConfigError, Fingerprint};
 ///   keyframe.
 /// - **Time:** a tick wraps after 71.6 minutes, so that a longer silence cannot be told from a short one. If there may
 ///   be no item for 17.9 minutes, as with a rate code at rest without heartbeats, call [`observe`](Self::observe).
-/// - **Fingerprint:** that of the bank goes into the first frame, into frames with keyframes, at most every fourth, and
-///   into any frame 0.52 s or more after the last one that had it: a byte a frame on average at most, or 8 bytes a second
-///   where there are fewer than 8 frames a second. A [`Receiver`](super::Receiver) with other schemes then calls no value
+/// - **Fingerprint:** that of the bank goes into every full frame, one each half second: see
+///   [`with_full_every`](Self::with_full_every). A [`Receiver`](super::Receiver) with other schemes then calls no value
 ///   exact.
 /// - **Addresses:** items of addresses that are not its banks' are refused, and counted as [foreign](Self::foreign). Banks
 ///   that share a link are joined by [`for_banks`](Self::for_banks).
-/// - **Memory:** 64 bytes on a 32-bit part.
+/// - **Memory:** about 160 bytes on a 32-bit part.
 ///
 /// ```
 /// use spikewire::{Bank, Event, FromEvents, Polarity, Tick, temporal::StepForward};

@@ -301,7 +301,8 @@ impl Framer {
             let mut lead = Word::default();
             time.put(self.coding, &mut lead);
             if lead.is_whole() {
-                bytes.set_limit(limit.min(short::HEADER + MAX_LENGTH));
+                // A byte is left for the length.
+                bytes.set_limit(limit.saturating_sub(1).min(short::HEADER + MAX_LENGTH));
                 let _ = bytes.put(&[0; short::HEADER]);
                 return Opening { point, lead: Some(lead), flags: 0 };
             }
@@ -517,13 +518,13 @@ impl<'a> FrameWriter<'_, 'a> {
     #[allow(clippy::inline_always)] // the frame would be copied
     #[inline(always)]
     pub fn finish(mut self) -> &'a [u8] {
-        let from = self.close();
-        self.bits.into_slice_from(from)
+        self.close();
+        self.bits.into_slice()
     }
 
-    /// Writes what is known at the end alone, and returns where the frame begins in its buffer.
+    /// Writes what is known at the end alone.
     #[inline(never)]
-    fn close(&mut self) -> usize {
+    fn close(&mut self) {
         self.put_lead();
         let run_at = self.run_at();
         let Self { framer, is_short, .. } = self;
@@ -531,30 +532,28 @@ impl<'a> FrameWriter<'_, 'a> {
         if self.keyframes > 0 {
             bytes.replace(run_at, self.keyframes);
         }
-        let (from, register) = if *is_short {
+        let register = if *is_short {
             let length = bytes.written().saturating_sub(short::HEADER) as u8;
             let first =
                 if self.keyframes > 0 { short::MAGIC | short::KEYFRAMES } else { short::MAGIC };
-            let from = if length > short::LENGTH {
-                bytes.replace(0, first | short::LENGTH);
-                bytes.replace(1, length);
-                0
-            } else {
-                bytes.replace(1, first | length.wrapping_sub(1) & short::LENGTH);
-                1
-            };
             let [low, ..] = framer.number.to_le_bytes();
-            bytes.replace(short::HEADER - 1, low);
-            (from, framer.known.go_to(framer.number, self.point))
+            bytes.replace(1, low);
+            if length > short::LENGTH {
+                bytes.replace(0, first | short::LENGTH);
+                bytes.insert(1, length);
+            } else {
+                bytes.replace(0, first | length.wrapping_sub(1) & short::LENGTH);
+            }
+            framer.known.go_to(framer.number, self.point)
         } else {
             bytes.replace(FLAGS_AT, VERSION << 4 | self.flags);
             bytes.replace(LENGTH_AT, bytes.written().saturating_sub(HEADER) as u8);
             framer.full_at = self.tick;
             framer.full_ahead = framer.full_ahead.saturating_sub(1);
             framer.known = Known::new(framer.coding, framer.fingerprint, framer.number, self.point);
-            (0, Register::START)
+            Register::START
         };
-        let checksum = register.after(bytes.slice_from(from)).checksum();
+        let checksum = register.after(bytes.as_slice()).checksum();
         bytes.set_limit(usize::MAX);
         // There is room, which the limit kept free.
         let _ = bytes.put(&checksum.to_le_bytes());
@@ -562,6 +561,5 @@ impl<'a> FrameWriter<'_, 'a> {
         framer.time = framer.time.nearest(self.place.tick());
         framer.flags = 0;
         framer.steps = self.steps;
-        from
     }
 }
