@@ -40,14 +40,14 @@ impl<'a> Cursor<'a> {
         Some(())
     }
 
-    /// The bytes written.
-    pub(crate) fn as_slice(&self) -> &[u8] {
-        self.bytes.get(..self.written).unwrap_or_default()
+    /// The bytes written from here on.
+    pub(crate) fn slice_from(&self, from: usize) -> &[u8] {
+        self.bytes.get(from..self.written).unwrap_or_default()
     }
 
-    /// The bytes written, for the lifetime of the buffer.
-    pub(crate) fn into_slice(self) -> &'a [u8] {
-        self.bytes.get(..self.written).unwrap_or_default()
+    /// The bytes written from here on, for the lifetime of the buffer.
+    pub(crate) fn into_slice_from(self, from: usize) -> &'a [u8] {
+        self.bytes.get(from..self.written).unwrap_or_default()
     }
 
     /// Replaces a byte already written.
