@@ -349,7 +349,9 @@ fn stepped(script: &mut Script) {
         // In their range and order, as steps must have them.
         lift %= rungs + 1;
         leaks.iter_mut().flatten().for_each(|leak| *leak %= rungs + 1);
-        leaks.iter_mut().for_each(|list| list.sort_unstable());
+        for list in &mut leaks {
+            list.sort_unstable();
+        }
     }
     let leaks: Vec<&[u16]> = leaks.iter().map(Vec::as_slice).collect();
     let steps = Steps {
@@ -391,10 +393,10 @@ fn stepped(script: &mut Script) {
     board.pins().call_faults.push_back((now + after, fault));
     let mut state = StepsState::REST;
     for inputs in recording {
-        let mut told = [false; 256];
+        let mut has_fired = [false; 256];
         let on_output = |neuron: u8| {
-            let seen = std::mem::replace(&mut told[usize::from(neuron)], true);
-            assert!(!seen, "a neuron fires once a step");
+            let before = std::mem::replace(&mut has_fired[usize::from(neuron)], true);
+            assert!(!before, "a neuron fires once a step");
         };
         if running.step(&steps, &mut state, inputs, on_output).is_err() {
             return;

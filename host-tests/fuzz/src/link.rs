@@ -262,9 +262,9 @@ where
                     assert_eq!(exact.to_bits32(), value, "what was told last is what is exact");
                     let flown = senders.iter().find(|own| own.session == session);
                     let history = flown.map_or(&histories[session], |own| &own.history);
-                    let near = history.keys().find(|own| {
-                        tick.since(Tick::from(**own)).unsigned_abs() <= PERIOD / 2
-                    });
+                    let near = history
+                        .keys()
+                        .find(|own| tick.since(Tick::from(**own)).unsigned_abs() <= PERIOD / 2);
                     let near = near.expect("a value is of a sample");
                     assert_eq!(value, history[near][channel], "called exact, at {near}");
                 } else if let Some(held) = held {

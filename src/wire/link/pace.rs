@@ -444,8 +444,7 @@ mod tests {
                     counted.lost > 0 || tolerance < 20_000,
                     "{period} {tolerance}: {counted:?}"
                 );
-                let is_settled =
-                    counted.settled > 300 || !(20_000..=200_000).contains(&tolerance);
+                let is_settled = counted.settled > 300 || !(20_000..=200_000).contains(&tolerance);
                 assert!(is_settled, "{period} {tolerance}: {counted:?}");
             }
         }
@@ -631,24 +630,27 @@ mod tests {
 
     #[test]
     fn each_piece_of_what_is_learned_has_its_jitter() {
-        let learned = |pieces: u32| {
-            let mut pace = Pace::new(20_000);
-            pace.set(10_000, 1_000);
-            for _ in 0..pieces {
-                pace.begin();
-                for _ in 0..120 / pieces {
-                    pace.learn(10_000, 1);
-                }
-            }
-            pace.doubt(100)
-        };
         // 100 samples by 120: 1000 / 4 of jitter in each piece; 20 000 / 128 of change; 1 of rounding.
         let change = 157;
-        assert_eq!(learned(1), 209 + change + 1);
-        assert_eq!(learned(2), 417 + change + 1);
-        assert_eq!(learned(8), 1_667 + change + 1);
+        for (pieces, samples, jitter) in [(1, 120, 209), (2, 120, 417), (8, 120, 1_667)] {
+            let pace = learned_in(pieces);
+            assert_eq!((pace.samples, pace.doubt(100)), (samples, jitter + change + 1), "{pieces}");
+        }
         // More would say little, and the first eight are forgotten.
-        assert_eq!(learned(10), 2_084 + change + 1);
+        assert_eq!(learned_in(10).samples, 24);
+    }
+
+    /// A pace learned from 120 samples in so many pieces.
+    fn learned_in(pieces: u32) -> Pace {
+        let mut pace = Pace::new(20_000);
+        pace.set(10_000, 1_000);
+        for _ in 0..pieces {
+            pace.begin();
+            for _ in 0..120 / pieces {
+                pace.learn(10_000, 1);
+            }
+        }
+        pace
     }
 
     /// The older half is forgotten: a clock that changed is measured anew.

@@ -52,7 +52,7 @@ pub mod flight {
     /// Returns the sender's half of the link, before the first frame of this session. Its frames carry the fingerprint of bank and label.
     #[must_use]
     pub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {
-        spikewire::link::Transmitter::new(CODING, session).with_fingerprint(BANK.fingerprint()).with_label(LABEL)
+        spikewire::link::Transmitter::new(CODING, session).with_addresses(0..=5).with_fingerprint(BANK.fingerprint()).with_label(LABEL)
     }
 
     /// Maximum number of events of a sample that the receiver stores.

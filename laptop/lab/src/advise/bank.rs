@@ -24,6 +24,10 @@ const SLOWEST: f64 = 250.0;
 /// request has a control loop, a scheme whose simulated flights had keyframes keeps the time of those flights instead.
 const KEYFRAMES: f64 = 1.0;
 
+/// Reason that there is no bank, and what helps.
+const NONE: &str = "no scheme suits all channels, for the reasons on their pages; fewer channels, a larger RMSE given for \
+     each, or a recording of livelier flight may help";
+
 /// Number of items in the smallest queue of the example firmware for a flight file. All events of a sample must fit, and
 /// a keyframe of each channel.
 const QUEUE: usize = 256;
@@ -154,18 +158,11 @@ impl BankAdvice {
         if let Some(reason) = &self.unsent {
             return Err(reason.clone());
         }
-        let Some(bank) = self.banks.first() else { return Err(self.none()) };
+        let Some(bank) = self.banks.first() else { return Err(NONE.to_owned()) };
         if !self.left_out.is_empty() {
             return Err(format!("its bank would lack channels: {}", self.reasons.join("; ")));
         }
         Ok(&bank.flight)
-    }
-
-    /// Says that no scheme suits all channels, and what helps.
-    fn none(&self) -> String {
-        "no scheme suits all channels, for the reasons on their pages; fewer channels, a larger RMSE given for each, or a \
-         recording of livelier flight may help"
-            .to_owned()
     }
 
     /// Returns the name of the advised scheme, if there is one.
@@ -238,7 +235,7 @@ impl BankAdvice {
         } else if let Some(reason) = &self.unsent {
             lines.push(format!("none: {reason}"));
         } else {
-            lines.push(format!("none: {}", self.none()));
+            lines.push(format!("none: {NONE}"));
         }
         lines.extend(self.warnings.iter().map(|words| format!("! {words}")));
         if self.is_cut_short {
@@ -349,28 +346,7 @@ fn bank(
         Ok(flight) => flight,
         Err(error) => return Ok(Err(format!("makes no bank: {error}"))),
     };
-    let mut trials = Vec::new();
-    let (mut channels, mut coarser) = (Vec::new(), Vec::new());
-    for (((advice, recording), channel), held_out) in
-        heard.iter().zip(&flight.channels).zip(held_out)
-    {
-        let ready = advice.ready(request, scheme, recording)?;
-        let trial = Trial::new(scheme, &flight.asked(channel), flight.sample, ready.recording())?;
-        let errors = Errors::of(ready.recording(), &trial.decoded);
-        if ready.flown.is_none_or(|(_, flown)| !errors.are_within(flown)) {
-            coarser.push(recording.name.clone());
-        }
-        let asked = channel.asked.iter().map(|(name, value)| (name, value.clone()));
-        channels.push(BankChannel {
-            name: recording.name.clone(),
-            unit: channel.unit.clone(),
-            parameters: brief(&asked.collect::<Vec<_>>()),
-            rmse: errors.rmse,
-            held_out,
-            rmse_of_samples: Errors::of(recording, &trial.decoded).rmse,
-        });
-        trials.push(trial);
-    }
+    let Judged { trials, channels, coarser } = judged(request, scheme, heard, &flight, held_out)?;
     // Channels whose unit is unknown are among the open questions.
     let unknown = |name: &String| {
         heard.iter().any(|(own, _)| own.inertial.is_none() && own.look.name == *name)
@@ -393,6 +369,46 @@ fn bank(
         channels,
         flight,
     })))
+}
+
+/// A bank's channels as they are coded: a trial of each, its words, and the names of those that are coarser than what flew.
+struct Judged {
+    trials: Vec<Trial>,
+    channels: Vec<BankChannel>,
+    coarser: Vec<String>,
+}
+
+/// Codes each channel with a flight's settings, and compares its error with that of the settings that flew.
+fn judged(
+    request: &AdviseRequest,
+    scheme: Scheme,
+    heard: &[(&Advice, &Recording)],
+    flight: &Flight,
+    held_out: Vec<Option<f64>>,
+) -> Result<Judged> {
+    let mut trials = Vec::new();
+    let (mut channels, mut coarser) = (Vec::new(), Vec::new());
+    for (((advice, recording), channel), held_out) in
+        heard.iter().zip(&flight.channels).zip(held_out)
+    {
+        let ready = advice.ready(request, scheme, recording)?;
+        let trial = Trial::new(scheme, &flight.asked(channel), flight.sample, ready.recording())?;
+        let errors = Errors::of(ready.recording(), &trial.decoded);
+        if ready.flown.is_none_or(|(_, flown)| !errors.are_within(flown)) {
+            coarser.push(recording.name.clone());
+        }
+        let asked = channel.asked.iter().map(|(name, value)| (name, value.clone()));
+        channels.push(BankChannel {
+            name: recording.name.clone(),
+            unit: channel.unit.clone(),
+            parameters: brief(&asked.collect::<Vec<_>>()),
+            rmse: errors.rmse,
+            held_out,
+            rmse_of_samples: Errors::of(recording, &trial.decoded).rmse,
+        });
+        trials.push(trial);
+    }
+    Ok(Judged { trials, channels, coarser })
 }
 
 /// Returns the maximum number of events of a sample, over all channels.

@@ -25,13 +25,13 @@ pub(super) struct Writer {
     size: Option<Size>,
     drops: bool,
     /// The writer of the format for the kind of events that come; `None` before the first item.
-    writer: Option<Box<dyn EventWriter>>,
+    inner: Option<Box<dyn EventWriter>>,
 }
 
 impl Writer {
     /// Makes a writer. If `drops` is true, it drops and counts events that the format cannot express.
     pub(super) fn new(format: Format, chosen: Option<Size>, drops: bool) -> Self {
-        Self { format, chosen, size: None, drops, writer: None }
+        Self { format, chosen, size: None, drops, inner: None }
     }
 
     fn begin(&self, has_pixels: bool) -> Result<Box<dyn EventWriter>> {
@@ -66,11 +66,11 @@ impl Writer {
     }
 
     fn writer(&mut self, has_pixels: bool) -> Result<&mut Box<dyn EventWriter>> {
-        let writer = match self.writer.take() {
+        let writer = match self.inner.take() {
             Some(writer) => writer,
             None => self.begin(has_pixels)?,
         };
-        Ok(self.writer.insert(writer))
+        Ok(self.inner.insert(writer))
     }
 }
 
@@ -89,6 +89,6 @@ impl EventWriter for Writer {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.writer.as_ref().map_or_else(Vec::new, |writer| writer.notes())
+        self.inner.as_ref().map_or_else(Vec::new, |writer| writer.notes())
     }
 }

@@ -203,37 +203,42 @@ impl Table {
             origin: Vec::new(),
             notes,
         };
-        let asked: Vec<&str> = options.columns().collect();
-        let chosen = match asked[..] {
-            [] | [ALL] => None,
-            ref asked => {
-                let columns = asked.iter().map(|name| {
-                    let named = |own: &Column| with_unit(own, &of_units) == *name;
-                    all(&names).find(named).map_or_else(|| find(name, &names, file), Ok)
-                });
-                Some(columns.collect::<Result<Vec<_>>>()?)
-            }
-        };
-        let time = table.time_column(&names, &of_units, chosen.as_deref(), options)?;
-        let of_time = time.as_ref().map(|(column, _)| column);
-        table.columns = match chosen {
-            Some(columns) => columns,
-            None => {
-                let signals = table.signals(&names, of_time);
-                if asked.is_empty() { vec![only(signals, &names, file)?] } else { signals }
-            }
-        };
-        table.note_names(&names);
-        if let Some((column, named)) = time.filter(|(time, _)| !table.columns.contains(time)) {
-            table.read_times(column, named, &names, options)?;
-        } else if let Some(unit) = options.time_unit {
-            return Err(TableKind::NoTimes.of(Given::new("time_unit", unit)).at(file));
-        }
-        for column in &mut table.columns {
-            column.name = with_unit(column, &of_units);
-        }
-        table.origin = vec![("column", table.names().join(","))];
+        table.choose(&names, &of_units, options)?;
         Ok(table)
+    }
+
+    /// Chooses the columns to read and that of the times. `units` are those of the row below the header.
+    ///
+    /// # Errors
+    /// Returns an error if a column is missing, or if the unit of its times is unknown.
+    fn choose(&mut self, names: &[String], units: &[String], options: &InputOptions) -> Result<()> {
+        let asked: Vec<&str> = options.columns().collect();
+        let mut chosen = None;
+        if !matches!(asked[..], [] | [ALL]) {
+            let columns = asked.iter().map(|name| {
+                let is_named = |own: &Column| with_unit(own, units) == *name;
+                all(names).find(is_named).map_or_else(|| find(name, names, &self.file), Ok)
+            });
+            chosen = Some(columns.collect::<Result<Vec<_>>>()?);
+        }
+        let time = self.time_column(names, units, chosen.as_deref(), options)?;
+        self.columns = if let Some(columns) = chosen {
+            columns
+        } else {
+            let signals = self.signals(names, time.as_ref().map(|(column, _)| column));
+            if asked.is_empty() { vec![only(signals, names, &self.file)?] } else { signals }
+        };
+        self.note_names(names);
+        if let Some((column, says)) = time.filter(|(time, _)| !self.columns.contains(time)) {
+            self.read_times(column, says, names, options)?;
+        } else if let Some(unit) = options.time_unit {
+            return Err(TableKind::NoTimes.of(Given::new("time_unit", unit)).at(&self.file));
+        }
+        for column in &mut self.columns {
+            column.name = with_unit(column, units);
+        }
+        self.origin = vec![("column", self.names().join(","))];
+        Ok(())
     }
 
     /// Finds the column with the times, and the format of times that the column's name suggests. If several columns hold
@@ -317,15 +322,11 @@ impl Table {
     fn signals(&mut self, names: &[String], time: Option<&Column>) -> Vec<Column> {
         let mut signals = Vec::new();
         let mut counts = Vec::new();
-        for (index, name) in names.iter().enumerate() {
-            let column = Column { index, name: name.clone() };
-            if time.is_some_and(|time| time.index == index) {
-                continue;
-            }
+        for column in all(names).filter(|own| time.is_none_or(|time| time.index != own.index)) {
             if self.is_count(&column) {
-                counts.push(format!("`{name}`"))
+                counts.push(format!("`{}`", column.name));
             } else {
-                signals.push(column)
+                signals.push(column);
             }
         }
         if !counts.is_empty() {
@@ -349,12 +350,12 @@ impl Table {
 
     /// Notes the chosen columns whose name stands for several columns.
     fn note_names(&mut self, names: &[String]) {
-        let mut noted: Vec<&str> = Vec::new();
+        let mut twice: Vec<&str> = Vec::new();
         let mut notes = Vec::new();
         for column in &self.columns {
             let same = names.iter().filter(|name| **name == column.name).count();
-            if same > 1 && !noted.contains(&column.name.as_str()) {
-                noted.push(&column.name);
+            if same > 1 && !twice.contains(&column.name.as_str()) {
+                twice.push(&column.name);
                 let read = self.columns.iter().filter(|own| own.name == column.name);
                 let read: Vec<String> = read.map(|own| (own.index + 1).to_string()).collect();
                 let (name, count) = (&column.name, read.len());

@@ -160,7 +160,7 @@ impl Start {
             return Ok(());
         };
         if header > self.line {
-            let above = self.text[..header].iter().filter(|byte| **byte == b'\n').count() as u64;
+            let above = self.text[..header].split_inclusive(|byte| *byte == b'\n').count() as u64;
             self.header_line = Some(above + 1);
             let length = self.text.len();
             self.leave_out(self.line..header);
