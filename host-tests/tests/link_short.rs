@@ -1,6 +1,15 @@
 //! Short frames: a writer and a reader written from the specification alone give and take the same bytes, with frames
 //! lost between; and step codes that heal after any loss that their step numbers tell apart.
 
+#![allow(
+    clippy::similar_names,
+    clippy::format_push_string,
+    clippy::format_collect,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    reason = "a specification in plain arithmetic, on numbers that fit"
+)]
+
 use std::collections::{HashMap, VecDeque};
 
 use proptest::prelude::*;
@@ -48,7 +57,7 @@ impl Bits {
     }
 
     fn bytes(mut self) -> Vec<u8> {
-        while self.0.len() % 8 != 0 {
+        while !self.0.len().is_multiple_of(8) {
             self.0.push('0');
         }
         let bytes = self.0.as_bytes().chunks(8);
