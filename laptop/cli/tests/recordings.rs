@@ -85,14 +85,15 @@ fn a_rate_that_no_sensor_has_asks_for_the_unit() {
         assert!(ran!("info --time-unit ms {table}").output.contains("0.396 s, 250.00 Hz"));
     }
     // A name with its unit is no guess.
-    let rows: String = (0..20).map(|row| format!("{},1\n", row * 10)).collect();
+    let rows = (0..20).map(|row| format!("{},1\n", row * 10)).collect::<Vec<_>>().concat();
     assert!(good("info -", &format!("time_s,x\n{rows}")).output.contains("0.10 Hz"));
 }
 
 #[test]
 fn columns_are_hidden_only_if_they_count_the_rows() {
     assert_eq!(columns(&info(&path("hidden_I.csv"))), ["I", "Q"]);
-    let rows: String = (0..20).map(|row| format!("{row},{},{}\n", row * 5, row % 3)).collect();
+    let rows =
+        (0..20).map(|row| format!("{row},{},{}\n", row * 5, row % 3)).collect::<Vec<_>>().concat();
     let ran = good("info -", &format!("sample,t_ms,i\n{rows}"));
     assert!(ran.output.contains("\n  i\n"), "{}", ran.output);
     assert!(
@@ -130,7 +131,8 @@ fn headers_are_found_below_other_lines() {
     let odd = text.replace("16,50008000,2\n", "16,50008000,two\n");
     refused("score --scheme sf --threshold 1 --column gyroADC[0] -", &odd, &["line 34"]);
 
-    let rows: String = (0..20).map(|row| format!("{},{},{row}\n", row * 5, row % 3)).collect();
+    let rows =
+        (0..20).map(|row| format!("{},{},{row}\n", row * 5, row % 3)).collect::<Vec<_>>().concat();
     let header = "Time,gyro,acc\n";
     for above in [
         "Logger 3\nDate,2024-05-01\n\n",
@@ -165,7 +167,7 @@ fn headers_are_found_below_other_lines() {
 
 #[test]
 fn tables_as_loggers_write_them() {
-    let rows: String = (0..20).map(|row| format!("{},{}\n", row * 5, row % 3)).collect();
+    let rows = (0..20).map(|row| format!("{},{}\n", row * 5, row % 3)).collect::<Vec<_>>().concat();
     // The header again, as where files were joined; comments of two kinds; a delimiter at the end of each row.
     let twice = format!("t_ms,x\n{rows}t_ms,x\n{rows}");
     let ran = good("info -", &twice);
