@@ -69,22 +69,17 @@ class Beside(Coded):
         self.lost, self.frames = 0, []
 
         def noted():
-            own = bool(is_lost())
-            self.lost |= own << len(self.frames)
-            return own
+            is_gone = bool(is_lost())
+            self.lost |= is_gone << len(self.frames)
+            return is_gone
 
-        encode = self.sender.encode
+        return super().carry(sample, noted)
 
-        def frames(sample):
-            for frame in encode(sample):
-                yield frame
-                self.frames.append(frame)
-
-        self.sender.encode = frames
-        try:
-            return super().carry(sample, noted)
-        finally:
-            self.sender.encode = encode
+    def send(self, sample):
+        """The frames of a sample, kept once their fate is known."""
+        for frame in super().send(sample):
+            yield frame
+            self.frames.append(frame.content)
 
 
 class Both(Control):

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import spikewire as sw
 
-from flight import RATE, Registers, fly
+from flight import RATE, Frame, Registers, Way, fly
 from manoeuvres import LESSON
 from sensor import UNIT
 
@@ -72,7 +73,7 @@ def instructions(name: str) -> float | None:
     return None if None in each else sum(each)
 
 
-class Coded:
+class Coded(Way):
     """The way of a sample by spikes: perhaps a low-pass, six encoders, frames that may be lost, six decoders."""
 
     def __init__(
@@ -86,19 +87,23 @@ class Coded:
         before = low_pass and sw.Filter.low_pass(low_pass, rate)
         self.sender = sw.Sender(schemes, self.period, keyframe_every, filter=before)
         self.receiver = sw.Receiver(schemes, self.period, clock_tolerance=0, filter=before)
-        self.samples = self.spikes = self.bytes = self.whole = 0
-        self.fired: list[tuple[int, bool]] = []
+        self.samples = self.whole = 0
 
-    def carry(self, sample: np.ndarray, is_lost) -> np.ndarray:
-        """What the cascade hears of a sample: the receiver's values, exact or not."""
+    def send(self, sample: np.ndarray) -> Iterator[Frame]:
+        """The link's frames: events, and now and then keyframes."""
         for frame in self.sender.encode(sample):
-            self.bytes += len(frame)
-            if not is_lost():
-                self.receiver.hear(frame)
-        self.samples += 1
-        self.receiver.advance(self.samples * self.period)
+            yield Frame(len(frame), frame)
         self.fired = self.sender.fired
         self.spikes += len(self.fired)
+
+    def hear(self, frame: Frame) -> None:
+        """Decodes a frame."""
+        self.receiver.hear(frame.content)
+
+    def values(self) -> np.ndarray:
+        """Ends a sample at the far end too: all of its frames that are not lost have arrived by now."""
+        self.samples += 1
+        self.receiver.advance(self.samples * self.period)
         self.whole += int(self.receiver.exact.sum())
         return self.receiver.values.astype(np.float32)
 

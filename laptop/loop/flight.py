@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from math import acos, cos, pi, sin, sqrt
 
@@ -42,23 +43,60 @@ class LowPass:
         return output.astype(np.float32)
 
 
-class Registers:
-    """The control: no code. A sample's twelve bytes go in a frame of 22 more; if it is lost, the last one stays."""
+class Way:
+    """The way of a sample to the controller: what is sent of it, and the values that the receiver holds.
 
-    def __init__(self, low_pass: LowPass | None = None):
-        self.spikes, self.bytes, self.exact = 0, 0, 1.0
-        self.fired: list[tuple[int, bool]] = []
-        self.values = np.zeros(6, np.float32)
-        self.low_pass = low_pass
+    A subclass has `send`, `hear` and `values`. `carry` is the line that loses frames and does nothing else to them;
+    `line.py` has others."""
 
-    def carry(self, sample: np.ndarray, is_lost) -> np.ndarray:
-        """What the cascade hears of a sample."""
-        self.bytes += 34
-        if self.low_pass:
-            sample = self.low_pass.next(sample)
-        if not is_lost():
-            self.values = sample
-        return self.values
+    spikes = bytes = 0
+    exact = 1.0
+    fired: list[tuple[int, bool]] = []
+
+    def send(self, sample: np.ndarray) -> Iterator[Frame]:
+        """The frames that go out after a sample."""
+        raise NotImplementedError
+
+    def hear(self, frame: Frame) -> None:
+        """Takes a frame that arrived."""
+        raise NotImplementedError
+
+    def values(self) -> np.ndarray:
+        """Ends a sample: the receiver's values, exact or not."""
+        raise NotImplementedError
+
+    def carry(self, sample: np.ndarray, is_lost: Callable[[], bool]) -> np.ndarray:
+        """Sends a sample over a line that may lose each frame; returns what the controller gets."""
+        for frame in self.send(sample):
+            self.bytes += frame.size
+            if not is_lost():
+                self.hear(frame)
+        return self.values()
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Bytes on the line: how many there are, and what they mean to the receiver."""
+
+    size: int
+    content: object
+
+
+class Registers(Way):
+    """The control: no code. A sample's twelve bytes go in a frame of `frame` more; if it is lost, the last one stays."""
+
+    def __init__(self, low_pass: LowPass | None = None, frame: int = 22):
+        self.held = np.zeros(6, np.float32)
+        self.low_pass, self.size = low_pass, frame + 12
+
+    def send(self, sample: np.ndarray) -> Iterator[Frame]:
+        yield Frame(self.size, self.low_pass.next(sample) if self.low_pass else sample)
+
+    def hear(self, frame: Frame) -> None:
+        self.held = frame.content
+
+    def values(self) -> np.ndarray:
+        return self.held
 
 
 @dataclass

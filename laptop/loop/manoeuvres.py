@@ -160,12 +160,12 @@ def lesson(time: float) -> tuple[float, float, float, float]:
 LESSON = Manoeuvre("lesson", 13, lesson)
 
 
-def at_random(seed: int) -> Manoeuvre:
+def at_random(seed: int, seconds: int = 4) -> Manoeuvre:
     """Steps or sines of any size up to 40° in roll and pitch, or a flip."""
     random = np.random.default_rng([seed, 7])
     if seed % 4 == 0:
         return Manoeuvre("flip", 3, flip)
-    sizes = random.uniform(-1, 1, (20, 2)) * random.choice([5, 15, 40]) * DEGREE
+    sizes = random.uniform(-1, 1, (5 * seconds, 2)) * random.choice([5, 15, 40]) * DEGREE
     rates, share = random.uniform(0.5, 4, 2), random.uniform(0, 0.5)
 
     def attitude(time: float):
@@ -173,4 +173,13 @@ def at_random(seed: int) -> Manoeuvre:
         waves = [share * sin(2 * pi * rate * time) * 0.5 for rate in rates]
         return roll * (1 - share) + waves[0], pitch * (1 - share) + waves[1], 0.0, 1.0
 
-    return Manoeuvre("at random", 4, attitude)
+    return Manoeuvre("at random", seconds, attitude)
+
+
+#: A minute of what is hardest to hold, and of what is easiest: drift has the time to show.
+MINUTES = [
+    Manoeuvre("hover, 60 s", 60, path=still),
+    Manoeuvre("eight, 60 s", 60, path=eight),
+    Manoeuvre("eight with a weak motor, 60 s", 60, path=eight, world={"weak": 0.9}),
+    at_random(102, 60),
+]
