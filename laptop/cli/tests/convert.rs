@@ -194,7 +194,7 @@ fn what_frames_writes_is_read_back_whole() {
     assert_eq!(rows(&convert("evt2", "csv", &events("x.raw")).output), table);
 }
 
-/// As a GenX320 sends it by default: a word has up to 32 pixels.
+/// As a `GenX320` sends it by default: a word has up to 32 pixels.
 #[test]
 fn evt21_is_read_as_what_its_header_says() {
     let words: [u64; 5] = [
