@@ -410,7 +410,7 @@ impl<'a, P: Storable> World<'a, P> {
             if !is_last_here {
                 continue;
             }
-            let mut reader = std::mem::replace(&mut self.reader, Reader::new());
+            let mut reader = std::mem::take(&mut self.reader);
             while let Some(received) = reader.next_frame(&mut bytes) {
                 self.hear(&received, unsent);
             }
