@@ -53,8 +53,8 @@ fn a_channel_s_parameter_goes_before_the_shared_one() {
 }
 
 /// Returns the fingerprint of the flight of one channel behind a filter, as its sender computes it.
-fn by_hand<P: Start>(scheme: P, label: &str) -> Fingerprint {
-    Bank::<_, 1>::new(&scheme).fingerprint().labelled(label)
+fn by_hand<P: Start>(scheme: &P, label: &str) -> Fingerprint {
+    Bank::<_, 1>::new(scheme).fingerprint().labelled(label)
 }
 
 macro_rules! same_as_by_hand {
@@ -68,14 +68,14 @@ macro_rules! same_as_by_hand {
         };
         let (first, label) = fingerprint(&format!("kind = \"first-order\", corner = {corner:?}"));
         let filter = FirstOrder::<$sample>::low_pass(corner, $rate);
-        prop_assert_eq!(first, by_hand(Filtered::new(filter, step), &label));
+        prop_assert_eq!(first, by_hand(&Filtered::new(filter, step), &label));
         let (second, label) = fingerprint(&format!("kind = \"low-pass\", corner = {corner:?}"));
         let filter = Biquad::<$sample>::low_pass(corner, $rate);
-        prop_assert_eq!(second, by_hand(Filtered::new(filter, step), &label));
+        prop_assert_eq!(second, by_hand(&Filtered::new(filter, step), &label));
         let (notch, label) =
             fingerprint(&format!("kind = \"notch\", centre = {corner:?}, q = {q:?}"));
         let filter = Biquad::<$sample>::notch(corner, $rate, q);
-        prop_assert_eq!(notch, by_hand(Filtered::new(filter, step), &label));
+        prop_assert_eq!(notch, by_hand(&Filtered::new(filter, step), &label));
         prop_assert!(first != second && second != notch && notch != first);
     }};
 }
