@@ -17,6 +17,7 @@ fn a_short_file_has_its_defaults() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of cases")]
 fn an_invalid_file_is_refused_with_key_and_line() {
     for (text, parameter, line, words) in [
         ("nonsense", "", Some(1), "cannot be read"),

@@ -101,7 +101,12 @@ fn from_file(path: &Path) -> Result<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Value, read, taps};
+    use super::{Result, Value, taps};
+    use std::path::Path;
+
+    fn read(text: &str) -> Result<Value> {
+        super::read(text, Path::new(""))
+    }
 
     #[test]
     fn shapes_and_scales() {
