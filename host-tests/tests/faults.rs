@@ -964,7 +964,7 @@ fn check_noticed(faults: &[Fault], tally: &Tally) {
     match faults {
         [Lost] => assert_eq!(noticed("frames lost"), tally.injected),
         [Doubled] => assert_eq!(noticed("repeated"), tally.injected),
-        [Late] => assert_eq!(noticed("late"), noticed("frames lost")),
+        [Late] => assert_eq!(noticed("late"), noticed("frames lost"), "{:?}", tally.noticed),
         [FarLate] => assert!(noticed("late") > 0),
         [SenderOut | SessionAgain | ReceiverOut | TickWrap | NumberWrap] => {
             assert!(noticed("starts") > 0);

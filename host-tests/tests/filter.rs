@@ -585,9 +585,9 @@ fn sizes() {
     fn of<F: Filter>() -> [usize; 2] {
         [size_of::<F>(), size_of::<F::State>()]
     }
-    assert_eq!([of::<FirstOrder<f32>>(), of::<Biquad<f32>>()], [[4, 4], [12, 8]]);
-    assert_eq!([of::<FirstOrder<i16>>(), of::<Biquad<i16>>()], [[4, 8], [12, 16]]);
-    assert_eq!([of::<FirstOrder<I16F16>>(), of::<Biquad<I16F16>>()], [[4, 8], [12, 24]]);
+    assert_eq!([of::<FirstOrder<f32>>(), of::<Biquad<f32>>()], [[8, 4], [16, 8]]);
+    assert_eq!([of::<FirstOrder<i16>>(), of::<Biquad<i16>>()], [[8, 8], [16, 16]]);
+    assert_eq!([of::<FirstOrder<I16F16>>(), of::<Biquad<I16F16>>()], [[8, 8], [16, 24]]);
 }
 
 /// States are written in flight and read back.
