@@ -80,7 +80,7 @@ fn no_order_of_events_makes_a_receiver_wrong() {
         Case { interrupts: 2, resets: 2, frames: 1, ..SMALL },
         // The line.
         Case { interrupts: 2, line_faults: 2, frames: 3, ..SMALL },
-        Case { interrupts: 2, line_faults: 2, frames: 3, room: 32, ..SMALL },
+        Case { interrupts: 2, line_faults: 2, frames: 3, room: 38, ..SMALL },
         Case { interrupts: 1, line_faults: 1, resets: 1, readers: 1, ..SMALL },
         // Reboots.
         Case { interrupts: 2, line_faults: 2, reboots: 1, ..SMALL },
@@ -106,7 +106,7 @@ const LARGE: Case = Case {
 
 fn draw_all(seeds: std::ops::Range<u64>) {
     for overflow in POLICIES {
-        for room in [32, 64] {
+        for room in [38, 64] {
             let case = Case { overflow, room, ..LARGE };
             let calm = Case { line_faults: 2, reboots: 1, resets: 1, ..case };
             for case in [case, calm] {
@@ -131,7 +131,7 @@ fn the_long_search() {
         Case { interrupts: 6, ..SMALL },
         Case { interrupts: 5, nested: 3, ..SMALL },
         Case { interrupts: 4, nested: 2, resets: 1, line_faults: 1, ..SMALL },
-        Case { interrupts: 4, line_faults: 3, frames: 4, room: 32, ..SMALL },
+        Case { interrupts: 4, line_faults: 3, frames: 4, room: 38, ..SMALL },
         Case { interrupts: 4, line_faults: 2, reboots: 1, readers: 1, frames: 3, ..SMALL },
         Case { interrupts: 3, line_faults: 4, reboots: 2, frames: 4, ..SMALL },
     ] {

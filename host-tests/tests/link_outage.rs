@@ -13,7 +13,8 @@ use host_tests::flight;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use spikewire::link::{
-    CLOCK_TOLERANCE, Coding, FrameView, MAX_FRAME, Reader, Receiver, Session, Transmitter, join,
+    CLOCK_TOLERANCE, Coding, FrameView, MAX_FRAME, Part, Reader, Received, Receiver, Session,
+    Transmitter, join,
 };
 use spikewire::temporal::StepForward;
 use spikewire::{Bank, ConfigError, FromItems, Item, Put, Recovery, Sample, Scheme, Tick};
@@ -111,6 +112,8 @@ struct World<'a, P: Scheme> {
     /// The numbers of the first frame of the session, and of the last one sent.
     first: u64,
     last: u64,
+    /// What reads every frame that is sent.
+    watch: Reader<MAX_FRAME>,
     /// Whether the reader has heard that first frame, and the number of the last one of the session that it heard.
     is_first_heard: bool,
     delivered: Option<u64>,
@@ -184,6 +187,7 @@ impl<'a, P: Storable> World<'a, P> {
             second: is_joined.then(Second::new),
             first: 0,
             last: 0,
+            watch: Reader::new(),
             is_first_heard: false,
             delivered: None,
             now: 0,
@@ -290,17 +294,19 @@ impl<'a, P: Storable> World<'a, P> {
         let bytes = first.next_frame(FromItems([beat].into_iter()), &mut frame).unwrap();
         self.first = FrameView::new(bytes.unwrap()).unwrap().0.number();
         (self.last, self.is_first_heard, self.delivered) = (self.first, false, None);
+        self.watch = Reader::new();
         self.unsent = None;
         self.claimed = [0; CHANNELS];
     }
 
     fn start_transmitter(&mut self, session: Session) -> Transmitter {
-        let period = self.period as u16;
+        let period = self.period;
         let Some(second) = &mut self.second else {
-            return Transmitter::for_bank(&self.bank, period, session);
+            return Transmitter::for_bank(&self.bank, period, session).with_step_bits(4);
         };
         (second.bank, second.value) = (Bank::new(&SECOND), None);
-        Transmitter::for_banks(&mut [&mut self.bank, &mut second.bank], period, session).unwrap()
+        let banks: &mut [&mut dyn Part] = &mut [&mut self.bank, &mut second.bank];
+        Transmitter::for_banks(banks, period, session).unwrap().with_step_bits(4)
     }
 
     /// The clock of samples changes within its tolerance.
@@ -398,39 +404,21 @@ impl<'a, P: Storable> World<'a, P> {
         let mut is_last_here = false;
         let unsent = self.unsent.take().unwrap_or(self.number);
         while let Some(mut bytes) = self.transmitter.next_frame(&mut source, &mut buffer).unwrap() {
-            self.last = FrameView::new(bytes).unwrap().0.number();
+            let mut sent = bytes;
+            self.last = self.watch.next_frame(&mut sent).unwrap().frame.number();
             is_last_here = f64::from(self.random.next_u32()) >= loss * f64::from(u32::MAX);
             if !is_last_here {
                 continue;
             }
-            while let Some(received) = self.reader.next_frame(&mut bytes) {
-                let exact = |receiver: &Receiver<_, CHANNELS, EVENTS>| {
-                    [0, 1].map(|channel| receiver.exact(channel))
-                };
-                let before = if received.is_after_break() {
-                    self.claimed = [unsent; CHANNELS];
-                    [None; CHANNELS]
-                } else {
-                    exact(&self.receiver)
-                };
-                self.is_first_heard |= received.is_start && received.frame.is_first();
-                self.delivered = Some(received.frame.number());
-                if let Some(second) = &mut self.second {
-                    second.receiver.apply(&received, |_, _, _| ());
-                }
-                let misfits = self.receiver.misfits();
-                let values = &mut self.values;
-                values.clear();
-                let on_value = |channel, tick, value| values.push((channel, tick, value));
-                self.receiver.apply(&received, on_value);
-                let after = exact(&self.receiver);
-                // After a misfit within a long frame, a code may be exact again before the frame ends.
-                let before =
-                    if self.receiver.misfits() == misfits { before } else { [None; CHANNELS] };
-                if !matches!(P::RECOVERY, Recovery::Keyframe) {
-                    self.check_samples(before, after);
-                }
+            let mut reader = std::mem::take(&mut self.reader);
+            while let Some(received) = reader.next_frame(&mut bytes) {
+                self.hear(&received, unsent);
             }
+            // What cannot be read may look like the beginning of a frame.
+            while let Some(received) = reader.next_after_silence() {
+                self.hear(&received, unsent);
+            }
+            self.reader = reader;
         }
         if let Some(second) = self.second.as_mut().filter(|_| is_last_here) {
             second.check(&mut self.claims);
@@ -443,6 +431,35 @@ impl<'a, P: Storable> World<'a, P> {
                     self.claims.add(value, truth.values[channel]);
                 }
             }
+        }
+    }
+
+    /// The receiver gets a frame with samples from the first unsent one on.
+    fn hear(&mut self, received: &Received<'_>, unsent: u64) {
+        let exact = |receiver: &Receiver<_, CHANNELS, EVENTS>| {
+            [0, 1].map(|channel| receiver.exact(channel))
+        };
+        let before = if received.is_after_break() {
+            self.claimed = [unsent; CHANNELS];
+            [None; CHANNELS]
+        } else {
+            exact(&self.receiver)
+        };
+        self.is_first_heard |= received.is_start && received.frame.is_first();
+        self.delivered = Some(received.frame.number());
+        if let Some(second) = &mut self.second {
+            second.receiver.apply(received, |_, _, _| ());
+        }
+        let misfits = self.receiver.misfits();
+        let values = &mut self.values;
+        values.clear();
+        let on_value = |channel, tick, value| values.push((channel, tick, value));
+        self.receiver.apply(received, on_value);
+        let after = exact(&self.receiver);
+        // After a misfit within a long frame, a code may be exact again before the frame ends.
+        let before = if self.receiver.misfits() == misfits { before } else { [None; CHANNELS] };
+        if !matches!(P::RECOVERY, Recovery::Keyframe) {
+            self.check_samples(before, after);
         }
     }
 
@@ -557,8 +574,9 @@ impl<'a, P: Storable> World<'a, P> {
 
     /// The link is whole again for as long as the code needs: then all is known.
     fn whole(&mut self) {
-        // A sender whose first frame was lost tells its fingerprint with every fourth frame at the latest.
-        let mut samples = 6 * self.beat + self.beside.recovery() + 5;
+        // After a longer outage a receiver waits for a full frame.
+        let full = (1 << 19) / self.period + self.beat;
+        let mut samples = full + 6 * self.beat + self.beside.recovery() + 5;
         let from = self.truth.len();
         let is_attack = std::mem::take(&mut self.is_attack);
         if self.clock == Clock::Changing {

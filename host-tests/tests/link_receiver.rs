@@ -50,8 +50,7 @@ where
     let queue = EventQueue::<256>::new(Overflow::Refuse);
     let mut consumer = queue.consumer().unwrap();
     let mut bank = Bank::<_, CHANNELS>::new(scheme).with_slot_ticks(way.slot_ticks);
-    let mut transmitter =
-        Transmitter::new(Coding::for_channels(8, PERIOD as u16), Session::counted(1));
+    let mut transmitter = Transmitter::new(Coding::for_channels(8, PERIOD), Session::counted(1));
     let mut reader = Reader::<MAX_FRAME>::new();
     let mut receiver = Receiver::<_, CHANNELS, EVENTS>::new(scheme);
     if way.slot_ticks > 0 {
@@ -147,7 +146,7 @@ struct Line {
 
 impl Line {
     /// A line for these channels, with a sample every `period` µs.
-    fn new(channels: u16, period: u16) -> Self {
+    fn new(channels: u16, period: u32) -> Self {
         let coding = Coding::for_channels(channels, period);
         Self { transmitter: Transmitter::new(coding, Session::counted(1)), reader: Reader::new() }
     }
@@ -319,7 +318,7 @@ struct Link<'a, P: Start, const N: usize> {
 impl<'a, P: Start, const N: usize> Link<'a, P, N> {
     fn new(scheme: &'a P, slot_ticks: u32) -> Self {
         let bank = Bank::new(scheme).with_slot_ticks(slot_ticks);
-        Self { bank, line: Line::new(8, PERIOD as u16), now: Tick::from(77) }
+        Self { bank, line: Line::new(8, PERIOD), now: Tick::from(77) }
     }
 
     /// Sends a sample, with a heartbeat behind it, unless its frames are lost.
@@ -535,8 +534,7 @@ fn fly<P: Start<Sample = f32>>(
             if let (Some(end), Some(exact)) = (last, receiver.exact(0)) {
                 assert_eq!(end.1, exact);
                 // Where the clock steps, a sample without events is told of where it was due.
-                let is_near =
-                    |tick: Tick| tick.since(end.0).unsigned_abs() <= u32::from(LATE_PERIOD) / 2;
+                let is_near = |tick: Tick| tick.since(end.0).unsigned_abs() <= LATE_PERIOD / 2;
                 let is_right = truth.iter().any(|&(tick, value)| is_near(tick) && value == end.1);
                 heard.right += usize::from(is_right);
                 heard.wrong += usize::from(!is_right);
@@ -546,14 +544,14 @@ fn fly<P: Start<Sample = f32>>(
     Heard { misfits: receiver.misfits(), why: receiver.withheld(0), ..heard }
 }
 
-const LATE_PERIOD: u16 = 2_500;
+const LATE_PERIOD: u32 = 2_500;
 const SLOT: u32 = 49;
 
 /// The keyframe is older than the event before it: what was pending does not come on top.
 #[test]
 fn a_clock_that_steps_back_before_a_keyframe_makes_nothing_wrong() {
     static ADAPTIVE: AdaptiveStepForward<f32> = AdaptiveStepForward::new(0.2, 4);
-    let period = u32::from(LATE_PERIOD);
+    let period = LATE_PERIOD;
     for back in [1_500, 2_000, 5_000, 5_001, 50_000] {
         let ticks = (0..300).map(|at| 4_000_000 + at * period - (at + 1) / 5 * back);
         let heard = fly(&ADAPTIVE, Receiver::new(&ADAPTIVE), ticks, 5);
@@ -565,7 +563,7 @@ fn a_clock_that_steps_back_before_a_keyframe_makes_nothing_wrong() {
 /// All events of a sample have its tick, so that it ends where another tick begins, however late that is.
 #[test]
 fn samples_of_a_population_code_may_be_late_by_anything() {
-    let period = u32::from(LATE_PERIOD);
+    let period = LATE_PERIOD;
     for late in [0, 1, 1_249, 1_250, 1_251, 2_000, 2_499, 7_000] {
         let ticks = (0..300).map(|at| 1_000_000 + at * period + at % 2 * late);
         let heard = fly(&POSITION, Receiver::new(&POSITION), ticks, 100);

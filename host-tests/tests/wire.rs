@@ -15,6 +15,7 @@ mod link_loss;
 mod link_outage;
 mod link_readout;
 mod link_receiver;
+mod link_short;
 mod link_time;
 mod queue;
 mod sink_bus;

@@ -50,6 +50,18 @@ impl<'a> Cursor<'a> {
         self.bytes.get(..self.written).unwrap_or_default()
     }
 
+    /// Inserts a byte before one that is written, beyond the limit if need be; nothing if the buffer is full.
+    pub(crate) fn insert(&mut self, at: usize, byte: u8) {
+        let end = self.written.saturating_add(1);
+        if let Some(moved) = self.bytes.get_mut(at..end) {
+            let mut carried = byte;
+            for slot in moved {
+                core::mem::swap(slot, &mut carried);
+            }
+            self.written = end;
+        }
+    }
+
     /// Replaces a byte already written.
     pub(crate) fn replace(&mut self, at: usize, byte: u8) {
         if let Some(target) = self.bytes.get_mut(at) {

@@ -25,7 +25,7 @@ pub struct Flight {
     /// Counts for one unit of each channel.
     pub counts: &'static [f64],
     /// µs from sample to sample.
-    pub period: u16,
+    pub period: u32,
     /// Samples from one keyframe or heartbeat to the next.
     pub keyframe_every: u32,
     /// The encoders, with the filters before them.
@@ -325,7 +325,6 @@ impl From<Withheld> for Status {
             Withheld::Heartbeat => Self::NO_HEARTBEAT,
             Withheld::Clock => Self::NO_CLOCK,
             Withheld::Always => Self::FADING,
-            Withheld::Unknown => Self::NO_FINGERPRINT,
             Withheld::Description { .. } => Self::OTHER_FLIGHT,
             Withheld::Contradicted => Self::CONTRADICTED,
             _ => Self::WITHHELD,

@@ -17,7 +17,7 @@ pub(crate) type CReader = Reader<MAX_FRAME>;
 unsafe extern "C" fn sw_writer_init(
     writer: *mut Kept<Transmitter>,
     channels: u16,
-    period: u16,
+    period: u32,
     session: u64,
 ) -> Status {
     let coding = Coding::for_channels(channels, period);
@@ -38,6 +38,30 @@ unsafe extern "C" fn sw_writer_describe(
         Ok(Status::OK)
     };
     describe().into()
+}
+
+/// Sends step numbers, by which step codes heal after lost frames.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn sw_writer_heal(writer: *mut Kept<Transmitter>, bits: u8) -> Status {
+    let heal = || {
+        // SAFETY: C's promise.
+        let writer = unsafe { Kept::exclusive(writer)? };
+        *writer = writer.with_step_bits(bits);
+        Ok(Status::OK)
+    };
+    heal().into()
+}
+
+/// Lets events wait for others.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn sw_writer_gather(writer: *mut Kept<Transmitter>, micros: u32) -> Status {
+    let gather = || {
+        // SAFETY: C's promise.
+        let writer = unsafe { Kept::exclusive(writer)? };
+        *writer = writer.with_gathering(micros);
+        Ok(Status::OK)
+    };
+    gather().into()
 }
 
 /// Tells a writer the time.

@@ -49,8 +49,6 @@ statuses! {
     NO_CLOCK = 14, c"not exact: heartbeats are too far apart for sub-timesteps this short, with a clock known this well";
     /// See [`Withheld::Always`](spikewire::link::Withheld::Always).
     FADING = 15, c"not exact: the error of this code fades, and is never 0";
-    /// See [`Withheld::Unknown`](spikewire::link::Withheld::Unknown).
-    NO_FINGERPRINT = 16, c"not exact: no fingerprint of the sender's flight yet";
     /// See [`Withheld::Description`](spikewire::link::Withheld::Description).
     OTHER_FLIGHT = 17, c"not exact: the sender has another flight: other code, parameters, samples, filter, order or label";
     /// See [`Withheld::Contradicted`](spikewire::link::Withheld::Contradicted).

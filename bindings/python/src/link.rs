@@ -217,7 +217,7 @@ impl Build<'_> {
         }
         let jitter = if is_slotted { slot_ticks.ilog2() as u8 + 2 } else { 0 };
         let end = (count * neurons) as u16;
-        let coding = Coding::for_channels(end, *period);
+        let coding = Coding::for_channels(end, (*period).into());
         let one = sample.one();
         let built = |own: &Option<Filter>| own.as_ref().map_or(Ok(Chain::none()), Filter::build);
         let filters = filters.iter().map(built).collect::<Result<Vec<_>>>()?;

@@ -1,6 +1,6 @@
 //! The event formats: golden bytes, round trips, and decoders of cut, damaged and random bytes.
 
-use std::num::NonZeroU16;
+use std::num::NonZeroU32;
 
 use proptest::prelude::*;
 use spikewire::link::{Coding, Session, Transmitter};
@@ -389,7 +389,7 @@ proptest! {
     fn the_shortest_batch_always_holds_something(
         near in events(100_000, u16::MAX),
         far in events(u32::MAX, 0x3FFF),
-        (period, address_bits, jitter_bits) in any::<(NonZeroU16, u8, u8)>(),
+        (period, address_bits, jitter_bits) in any::<(NonZeroU32, u8, u8)>(),
         keyframes in prop::collection::vec(any::<(f32, prop::sample::Index)>(), 0..20),
     ) {
         let [near, mut far] = [near, far].map(|events| events.into_iter().map(Item::Event).collect::<Vec<_>>());
@@ -402,7 +402,7 @@ proptest! {
             let at = at.index(far.len() + 1);
             far.insert(at, Item::Keyframe(Keyframe::new(Tick::default(), address, value)));
         }
-        goes_on(Transmitter::new(Coding { period, address_bits, jitter_bits }, Session::counted(0)), &far);
+        goes_on(Transmitter::new(Coding { period, address_bits, jitter_bits, step_bits: 0 }, Session::counted(0)), &far);
     }
 
     #[test]

@@ -24,7 +24,8 @@ impl Sender {
     /// A sender for the sensor's channels, before the first frame of this session.
     pub fn new<I: Imu>(session: Session) -> Self {
         // The sensor's clock is not ours: its samples come a few µs early or late.
-        let coding = Coding::for_channels(CHANNELS as u16, I::PLAN.period).with_jitter_bits(4);
+        let coding =
+            Coding::for_channels(CHANNELS as u16, I::PLAN.period.into()).with_jitter_bits(4);
         let bank = Bank::<_, CHANNELS>::per_channel(I::SCHEMES);
         Self::of(Transmitter::new(coding, session).with_fingerprint(bank.fingerprint()))
     }

@@ -50,7 +50,7 @@ impl Put for &mut Items {
 pub fn run(out: &mut impl fmt::Write) -> fmt::Result {
     let mut line = Usart1::new();
     let mut bank = Bank::<_, CHANNELS>::per_channel(SCHEMES);
-    let mut transmitter = Transmitter::for_bank(&bank, PERIOD, Session::counted(0));
+    let mut transmitter = Transmitter::for_bank(&bank, PERIOD.into(), Session::counted(0));
     let mut reader = Reader::<MAX_FRAME>::new();
     let mut receiver = Receiver::<_, CHANNELS, 0>::per_channel(SCHEMES);
     let mut control = Control::new(500.0);

@@ -24,7 +24,7 @@ type Schemes = [&'static StepForward<f32>; CHANNELS];
 /// Samples from one keyframe to the next: 50 ms of the recording, as the far end's silence counts on.
 const KEYFRAME_EVERY: usize = 10;
 /// The recording's, in µs; its ticks come up to 32 µs early or late.
-const PERIOD: u16 = 5_000;
+const PERIOD: u32 = 5_000;
 /// From one sample to the next: some 1000 a second at QEMU's 168 MHz.
 const TIMER_RELOAD: u32 = 168_000;
 /// The board starts once; one that may start again counts its starts.

@@ -36,7 +36,7 @@ pub struct Sender {
 impl Sender {
     pub fn new(starts: u32, micros: u64) -> Self {
         let bank = Bank::per_channel(SCHEMES);
-        let transmitter = Transmitter::for_bank(&bank, PERIOD as u16, Session::counted(starts));
+        let transmitter = Transmitter::for_bank(&bank, PERIOD, Session::counted(starts));
         Self {
             starts,
             micros,

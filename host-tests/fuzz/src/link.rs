@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::fmt::Debug;
 
-use spikewire::link::{FrameView, MAX_FRAME, MIN_FRAME, Reader, Receiver, Session, Transmitter};
+use spikewire::link::{MAX_FRAME, MIN_FRAME, Reader, Receiver, Session, Transmitter};
 use spikewire::population::{Position, Slots};
 use spikewire::rate::{Hough, Taps};
 use spikewire::temporal::{AdaptiveStepForward, MovingWindow, StepForward, TemporalContrast};
@@ -14,7 +14,7 @@ use spikewire::{
 use crate::script::Script;
 
 const CHANNELS: usize = 2;
-const PERIOD: u16 = 1_000;
+const PERIOD: u32 = 1_000;
 
 static STEP: StepForward<i16> = StepForward::new(10);
 static FLOAT: StepForward<f32> = StepForward::new(0.1);
@@ -54,6 +54,8 @@ struct Sender<'q, P: Start + 'static> {
     session: usize,
     /// By tick, what the decoders hold after the sample.
     history: HashMap<u32, [u32; CHANNELS]>,
+    /// What reads every frame that is sent.
+    watch: Reader<MAX_FRAME>,
     /// Number of the last frame, if all that was coded is in it or in those before.
     last: Option<u64>,
 }
@@ -74,6 +76,7 @@ where
             now,
             session,
             history: HashMap::new(),
+            watch: Reader::new(),
             last: None,
         }
     }
@@ -120,7 +123,9 @@ where
         let mut frames: Vec<Vec<u8>> = Vec::new();
         let mut last = None;
         while let Some(frame) = self.transmitter.next_frame(&mut consumer, &mut buffer).unwrap() {
-            let number = FrameView::new(frame).expect("a sender's frame is whole").0.number();
+            let mut bytes = frame;
+            let read = self.watch.next_frame(&mut bytes).expect("a sender's frame is whole");
+            let number = read.frame.number();
             sent.insert(number, (self.session, None));
             last = Some(number);
             frames.push(frame.to_vec());
@@ -235,6 +240,10 @@ where
         let mut input = &stream[..];
         while let Some(received) = reader.next_frame(&mut input) {
             let number = received.frame.number();
+            if received.is_unread {
+                receiver.apply(&received, |_, _, _| ());
+                continue;
+            }
             let (session, held) = *sent.get(&number).expect("no frame is invented");
             let gap = received.gap.map_or(0, |gap| u64::from(gap.lost_frames));
             if !received.is_start {
@@ -253,9 +262,9 @@ where
                     assert_eq!(exact.to_bits32(), value, "what was told last is what is exact");
                     let flown = senders.iter().find(|own| own.session == session);
                     let history = flown.map_or(&histories[session], |own| &own.history);
-                    let near = history.keys().find(|own| {
-                        tick.since(Tick::from(**own)).unsigned_abs() <= u32::from(PERIOD) / 2
-                    });
+                    let near = history
+                        .keys()
+                        .find(|own| tick.since(Tick::from(**own)).unsigned_abs() <= PERIOD / 2);
                     let near = near.expect("a value is of a sample");
                     assert_eq!(value, history[near][channel], "called exact, at {near}");
                 } else if let Some(held) = held {
@@ -287,8 +296,10 @@ pub fn bytes(bytes: &[u8]) {
 fn dressed(script: &mut Script) -> Vec<u8> {
     let mut stream = Vec::new();
     while !script.is_over() {
-        let mut frame = vec![0xA5, 0x30 | script.byte() & 0x8F];
-        frame.extend((0..15).map(|_| script.byte()));
+        let mut frame = vec![0xA5, 0x40 | script.byte() & 0x0F];
+        frame.extend((0..16).map(|_| script.byte()));
+        frame.push(script.byte() % 5); // bits of step numbers
+        frame.extend((0..4).map(|_| script.byte()));
         let length = script.below(64);
         frame.push(length as u8);
         frame.extend((0..length).map(|_| script.byte()));
@@ -309,6 +320,9 @@ fn read<const N: usize>(input: &[u8], cut: usize) -> (Vec<Vec<u8>>, [u32; 6]) {
     let mut frames = Vec::new();
     for mut piece in input.chunks(cut) {
         while let Some(received) = reader.next_frame(&mut piece) {
+            if received.is_unread {
+                continue;
+            }
             let frame = &received.frame;
             let told = (
                 frame.number(),

@@ -317,6 +317,7 @@ impl<'a> World<'a> {
         let boots = self.boots.get() as u32;
         let session = if self.case.fault == Some(Fault::SessionsAlike) { 0 } else { boots };
         Transmitter::new(Coding::for_channels(2, 1_000), Session::counted(session))
+            .with_full_every(0)
     }
 
     /// Main: sends all there is.

@@ -284,7 +284,7 @@ fn a_recording_is_coded_as_the_vehicle_does() {
         let values = (0..flight::CHANNELS)
             .map(|channel| f64::from(count(channel, sample)) / flight::COUNTS[channel]);
         let values: Vec<String> = values.map(|value| value.to_string()).collect();
-        format!("{},{}\n", sample * usize::from(flight::PERIOD), values.join(","))
+        format!("{},{}\n", sample * flight::PERIOD as usize, values.join(","))
     };
     let rows: String = (0..SAMPLES).map(row).collect();
     let (_directory, log) = file("log.csv", format!("time_us,{names}\n{rows}"));

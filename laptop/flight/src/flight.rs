@@ -330,7 +330,7 @@ impl Flight {
     pub fn coding(&self) -> Coding {
         let addresses = self.channels.len() * self.neurons();
         let jitter = self.slot_ticks().checked_ilog2().map_or(0, |bits| bits as u8 + 2);
-        Coding::for_channels(addresses as u16, self.period.get()).with_jitter_bits(jitter)
+        Coding::for_channels(addresses as u16, self.period.get().into()).with_jitter_bits(jitter)
     }
 
     /// Returns the maximum number of events that a receiver stores for a sample, over all channels; 0 if the receiver

@@ -82,7 +82,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     );
     item(
         "Time from one sample to the next, in µs.",
-        format!("pub const PERIOD: u16 = {};", flight.period),
+        format!("pub const PERIOD: u32 = {};", flight.period),
     );
     item(
         "Number of samples from one keyframe or heartbeat to the next.",

@@ -299,7 +299,7 @@ impl<P: Scheme, const N: usize, const EVENTS: usize> Receiving<'_, P, N, EVENTS>
             {
                 *has_fired = true;
             }
-            self.end = Some(event.tick + u32::from(received.frame.period().get()));
+            self.end = Some(event.tick + received.frame.period().get());
         }
     }
 

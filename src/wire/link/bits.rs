@@ -40,6 +40,14 @@ pub(super) struct Word {
     count: u32,
 }
 
+impl Word {
+    /// Whether it has all its bits.
+    #[inline]
+    pub(super) fn is_whole(self) -> bool {
+        self.count < 32
+    }
+}
+
 impl PutBits for Word {
     #[inline]
     fn put(&mut self, value: u32, count: u32) {
@@ -94,7 +102,7 @@ impl<'a> BitWriter<'a> {
     /// Appends a word; `None` if it has 32 bits or more, or does not fit.
     #[inline]
     pub(super) fn put_word(&mut self, word: Word) -> Option<()> {
-        let fits = word.count < 32 && word.count as i32 <= self.left;
+        let fits = word.is_whole() && word.count as i32 <= self.left;
         fits.then(|| self.put(word.bits, word.count))
     }
 
@@ -125,12 +133,18 @@ impl<'a> BitWriter<'a> {
         self.left >= 0
     }
 
-    /// Writes the bits that are not in the buffer yet, with the last byte filled up with 0.
-    pub(super) fn finish(mut self) -> Cursor<'a> {
+    /// Writes the bits that are not in the buffer yet, with the last byte filled up with 0, and returns the bytes.
+    pub(super) fn finish(&mut self) -> &mut Cursor<'a> {
         let bytes = self.bits.unbounded_shl(32_u32.wrapping_sub(self.pending)).to_be_bytes();
         let count = self.pending.div_ceil(8) as usize;
         let _ = self.bytes.put(bytes.get(..count).unwrap_or_default());
-        self.bytes
+        self.pending = 0;
+        &mut self.bytes
+    }
+
+    /// The bytes written, for the lifetime of the buffer.
+    pub(super) fn into_slice(self) -> &'a [u8] {
+        self.bytes.into_slice()
     }
 }
 
@@ -198,7 +212,16 @@ pub(super) struct BitReader<'a> {
 
 impl<'a> BitReader<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, taken: 0 }
+        Self::after(bytes, 0)
+    }
+
+    /// After the first bits.
+    pub(super) fn after(bytes: &'a [u8], taken: usize) -> Self {
+        Self { bytes, taken }
+    }
+
+    pub(super) fn taken(&self) -> usize {
+        self.taken
     }
 
     /// The next bits: at least 25, or all that are left. Zeros follow the last one.

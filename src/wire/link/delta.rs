@@ -3,7 +3,8 @@
 use core::num::NonZeroU32;
 
 use super::Coding;
-use super::bits::{PutBits, TakeBits};
+use super::bits::{BitReader, PutBits, TakeBits};
+use super::steps::Steps;
 use crate::Polarity;
 use crate::event::{Event, Tick};
 use crate::num::LACKS_DIVISION;
@@ -24,18 +25,27 @@ pub(super) struct Place {
     tick: Tick,
     /// The lowest address that the next event can have at this tick: one above the last event, up to 65 536.
     next_address: u32,
+    /// The addresses of this frame whose step number is known, a bit each.
+    numbered: u16,
+}
+
+/// An event, and the low bits of its address's step number after it, which the first event of an address has.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Numbered {
+    pub(super) event: Event,
+    pub(super) number: Option<u8>,
 }
 
 impl Place {
     /// The beginning of a frame. The coding is within its limits.
     pub(super) fn new(coding: Coding, tick: Tick) -> Self {
-        Self { coding, tick, next_address: 0 }
+        Self { coding, tick, next_address: 0, numbered: 0 }
     }
 
     /// Puts the bits of an event of the frame with this tick; `None` if it lies more than [`MAX_SINCE_START`] from there.
     #[inline]
     pub(super) fn put(&self, event: Event, start: Tick, bits: &mut impl PutBits) -> Option<()> {
-        let Coding { period, address_bits, jitter_bits } = self.coding;
+        let Coding { period, address_bits, jitter_bits, .. } = self.coding;
         let address = u32::from(event.address);
         let up = u32::from(event.polarity == Polarity::Up);
         let address_bits = u32::from(address_bits) + POLARITY;
@@ -50,31 +60,52 @@ impl Place {
                 if since_start.wrapping_add(MAX_SINCE_START) > 2 * MAX_SINCE_START {
                     return None;
                 }
-                let (steps, jitter) = nearest_step(since, period.into());
+                let (steps, jitter) = nearest_step(since, period);
                 bits.put(1, 1);
                 bits.put_code(zigzag(steps.wrapping_sub(1)), 0);
-                let jitter_bits = u32::from(jitter_bits);
-                if LACKS_DIVISION && jitter == 0 {
-                    // The code of 0, as a timer has no jitter. Other cores code any number as quickly.
-                    bits.put(1_u32.wrapping_shl(jitter_bits), jitter_bits + 1);
-                } else {
-                    bits.put_code(zigzag(jitter), jitter_bits);
-                }
+                put_jitter(jitter, jitter_bits, bits);
                 bits.put_code(address << POLARITY | up, address_bits);
             }
         }
         Some(())
     }
 
+    /// Whether events have step numbers.
+    #[inline]
+    pub(super) fn has_numbers(&self) -> bool {
+        self.coding.step_bits > 0
+    }
+
+    /// Whether an event of this address has its step number.
+    #[inline]
+    pub(super) fn has_number(&self, address: u16) -> bool {
+        self.has_numbers() && self.is_first_of(address)
+    }
+
+    #[inline(never)]
+    fn is_first_of(&self, address: u16) -> bool {
+        Steps::has(address) && self.numbered.unbounded_shr(address.into()) & 1 == 0
+    }
+
     /// Takes the bits of an event; `None` if they code no event.
     #[inline]
-    pub(super) fn take(&self, bits: &mut impl TakeBits) -> Option<Event> {
-        let Coding { period, address_bits, jitter_bits } = self.coding;
+    pub(super) fn take(&self, bits: &mut impl TakeBits) -> Option<Numbered> {
+        let event = self.take_event(bits)?;
+        let mut number = None;
+        if self.has_number(event.address) {
+            number = Some(bits.take(self.coding.step_bits.into())? as u8);
+        }
+        Some(Numbered { event, number })
+    }
+
+    #[inline]
+    fn take_event(&self, bits: &mut impl TakeBits) -> Option<Event> {
+        let Coding { period, address_bits, jitter_bits, .. } = self.coding;
         let (mut tick, mut next_address) = (self.tick, self.next_address);
         if bits.take(1)? == 1 {
             let steps = unzigzag(bits.take_code(0)?).wrapping_add(1);
             let jitter = unzigzag(bits.take_code(jitter_bits.into())?);
-            let since = steps.wrapping_mul(period.get().into()).wrapping_add(jitter);
+            let since = steps.wrapping_mul(period.get().cast_signed()).wrapping_add(jitter);
             tick = tick.shifted(since);
             next_address = 0;
         }
@@ -97,11 +128,63 @@ impl Place {
     pub(super) fn pass(&mut self, event: Event) {
         self.tick = event.tick;
         self.next_address = u32::from(event.address) + 1;
+        if self.has_numbers() && Steps::has(event.address) {
+            self.numbered |= 1_u16.wrapping_shl(event.address.into());
+        }
+    }
+}
+
+/// Puts a jitter.
+#[inline]
+pub(super) fn put_jitter(jitter: i32, jitter_bits: u8, bits: &mut impl PutBits) {
+    let jitter_bits = u32::from(jitter_bits);
+    if LACKS_DIVISION && jitter == 0 {
+        // The code of 0, as a timer has no jitter. Other cores code any number as quickly.
+        bits.put(1_u32.wrapping_shl(jitter_bits), jitter_bits + 1);
+    } else {
+        bits.put_code(zigzag(jitter), jitter_bits);
+    }
+}
+
+/// The time of a short frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ShortTime {
+    /// The low bits of the number of its point on the grid.
+    pub(super) count: u32,
+    pub(super) jitter: i32,
+}
+
+impl ShortTime {
+    /// Puts the bits of the time.
+    #[inline]
+    pub(super) fn put(self, coding: Coding, bits: &mut impl PutBits) {
+        bits.put(self.count, coding.grid_bits());
+        put_jitter(self.jitter, coding.jitter_bits, bits);
+    }
+
+    /// Takes the bits of a time; `None` if there are too few.
+    #[inline]
+    pub(super) fn take(coding: Coding, bits: &mut BitReader<'_>) -> Option<Self> {
+        let mut glance = bits.glance();
+        match Self::take_from(coding, &mut glance) {
+            Some(time) if bits.pass(glance).is_some() => Some(time),
+            _ => Self::take_from(coding, bits),
+        }
+    }
+
+    #[inline]
+    fn take_from(coding: Coding, bits: &mut impl TakeBits) -> Option<Self> {
+        let count = match coding.grid_bits() {
+            0 => 0,
+            grid_bits => bits.take(grid_bits)?,
+        };
+        let jitter = unzigzag(bits.take_code(coding.jitter_bits.into())?);
+        Some(Self { count, jitter })
     }
 }
 
 /// `since` as the nearest number of periods, and the rest: at most half a period.
-fn nearest_step(since: i32, period: NonZeroU32) -> (i32, i32) {
+pub(super) fn nearest_step(since: i32, period: NonZeroU32) -> (i32, i32) {
     let magnitude = since.unsigned_abs().wrapping_add(period.get() / 2) / period;
     let steps = if since < 0 { (magnitude as i32).wrapping_neg() } else { magnitude as i32 };
     (steps, since.wrapping_sub(steps.wrapping_mul(period.get() as i32)))

@@ -1,8 +1,9 @@
 //! Reader: finds frames in bytes that arrive cut anywhere, damaged, or from the middle of a stream.
 
-use super::frame::{CHECKSUM, MAGIC};
+use super::frame::{Head, MAGIC, short};
+use super::known::Known;
 use super::time::Time;
-use super::{FrameView, LinkError, MIN_FRAME, session};
+use super::{Coding, FrameView, LinkError, MIN_FRAME, session};
 
 /// A gap in the numbers: frames that are missing between two that arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +22,10 @@ pub struct Received<'a> {
     /// Whether it is the first frame of the sender's session that arrived, also after 2²⁴ lost frames or more; or one of
     /// whose number or time the session's earlier frames say that it is used again.
     pub is_start: bool,
+    /// Whether this stands for bytes of which no frame can be read: a short frame that is damaged, or that goes on from
+    /// one that is missing for too long. Its frame is empty, and has the number and time of the one before. It comes once
+    /// until the next frame, so that no value is called exact meanwhile.
+    pub is_unread: bool,
     /// The frame.
     pub frame: FrameView<'a>,
 }
@@ -41,7 +46,7 @@ impl Received<'_> {
 /// - **A session that is used again**, as where a sender's supply fails before its start was counted, begins anew where it
 ///   shows: by another first frame than that delivered, or one that comes more than sixteen frames late, by other bytes of the frame delivered last, by a time that goes
 ///   back by more than 65.5 ms while numbers rise or the other way round, or by sixteen late frames in a row.
-/// - **Memory:** `N + 152` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
+/// - **Memory:** about `N + 204` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
 /// - **Delay:** none; a frame whose length was damaged, or whose end is missing, may delay the frames in the 255 bytes
 ///   after it, which on a quiet link are several keyframes: see [`next_after_silence`](Self::next_after_silence).
@@ -57,6 +62,11 @@ pub struct Reader<const N: usize> {
     handed_out: usize,
     /// The sender's last sessions, the present one first.
     sessions: [Run; 4],
+    /// The frame delivered last, from which short ones go on.
+    known: Option<Known>,
+    /// Whether bytes came since then that belong to no frame, and whether the receiver heard of it.
+    is_interrupted: bool,
+    has_told: bool,
     /// How many late frames, or frames of earlier sessions, came in a row.
     strays: u16,
     /// The time and the checksum of the frame that was delivered last.
@@ -121,6 +131,8 @@ enum Standing {
     Late,
     /// A frame of an earlier session.
     Stray,
+    /// No frame can be read.
+    Unread,
 }
 
 impl<const N: usize> Default for Reader<N> {
@@ -139,6 +151,9 @@ impl<const N: usize> Reader<N> {
             end: 0,
             handed_out: 0,
             sessions: [Run::NONE; 4],
+            known: None,
+            is_interrupted: false,
+            has_told: false,
             strays: 0,
             time: Time::from_micros(0),
             checksum: 0,
@@ -165,11 +180,25 @@ impl<const N: usize> Reader<N> {
 
     fn next(&mut self, input: &mut &[u8], is_silent: bool) -> Option<Received<'_>> {
         self.start = self.start.wrapping_add(core::mem::take(&mut self.handed_out));
-        let (length, standing, checksum) = self.find(input, is_silent)?;
-        self.handed_out = length;
-        let end = self.start.wrapping_add(length).wrapping_sub(CHECKSUM);
-        let frame = FrameView::read(self.buffer.get(self.start..end)?)?;
+        if self.start == self.end && input.is_empty() {
+            return None;
+        }
+        let (head, standing) = self.find(input, is_silent)?;
+        if standing == Standing::Unread {
+            let frame = FrameView::with_head(head, &[]);
+            return Some(Received { gap: None, is_start: false, is_unread: true, frame });
+        }
+        self.handed_out = head.length();
+        match &mut self.known {
+            Some(known) if head.is_short() => {
+                known.go_to(head.number, head.point);
+            }
+            known => *known = Some(head.known()),
+        }
+        let checksum = head.checksum;
+        let frame = FrameView::with_head(head, self.buffer.get(self.start..self.end)?);
         self.frames = self.frames.saturating_add(1);
+        (self.is_interrupted, self.has_told) = (false, false);
 
         let next = session::next(frame.number());
         (self.time, self.checksum) = (frame.time(), checksum);
@@ -197,7 +226,7 @@ impl<const N: usize> Reader<N> {
         let lost_frames = if let Standing::After(lost) = standing { lost } else { 0 };
         self.lost_frames = self.lost_frames.saturating_add(lost_frames);
         let gap = (lost_frames > 0).then_some(Gap { lost_frames });
-        Some(Received { gap, is_start, frame })
+        Some(Received { gap, is_start, is_unread: false, frame })
     }
 
     /// Number of frames that arrived whole.
@@ -232,24 +261,32 @@ impl<const N: usize> Reader<N> {
         self.skipped
     }
 
-    /// Finds the next frame to deliver, which then begins at `start`, and returns its length, standing and checksum.
-    fn find(&mut self, input: &mut &[u8], is_silent: bool) -> Option<(usize, Standing, u32)> {
+    /// Whether bytes came since the last frame that belong to none: a frame was damaged, or short frames wait for a full
+    /// one, which says what they leave out.
+    pub const fn is_interrupted(&self) -> bool {
+        self.is_interrupted
+    }
+
+    /// Finds the next frame to deliver, which then begins at `start`, and returns its head and standing.
+    fn find(&mut self, input: &mut &[u8], is_silent: bool) -> Option<(Head, Standing)> {
         loop {
             let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
-            let frame = FrameView::new(bytes);
-            match frame {
-                Ok((frame, length)) => {
-                    let checksum = checksum_of(bytes, length);
-                    let counter = match self.standing(&frame, checksum) {
+            match Head::read(bytes, self.known.as_ref()) {
+                Ok(head) => {
+                    let frame = FrameView::with_head(head, bytes);
+                    let counter = match self.standing(&frame, head.checksum) {
                         Standing::Repeated => &mut self.repeated,
                         Standing::Late | Standing::Stray => {
-                            self.strays = self.strays.saturating_add(1);
+                            // Where short frames cannot be read either, their sender is likely another start.
+                            let weight =
+                                if self.has_told && !head.is_short() { RETURN / 2 } else { 1 };
+                            self.strays = self.strays.saturating_add(weight);
                             &mut self.late
                         }
-                        standing => return Some((length, standing, checksum)),
+                        standing => return Some((head, standing)),
                     };
                     *counter = counter.saturating_add(1);
-                    self.start = self.start.wrapping_add(length);
+                    self.start = self.start.wrapping_add(head.length());
                 }
                 Err(LinkError::Truncated { needed, .. })
                     if needed <= N && (!is_silent || bytes.is_empty()) =>
@@ -263,10 +300,20 @@ impl<const N: usize> Reader<N> {
                     if matches!(error, LinkError::Checksum { .. }) {
                         self.bad_checksums = self.bad_checksums.saturating_add(1);
                     }
-                    let next = bytes.iter().skip(1).position(|&byte| byte == MAGIC);
+                    self.is_interrupted = true;
+                    let is_short = bytes.first().is_some_and(|&first| short::begins_with(first));
+                    let is_known = self.known.is_some();
+                    let begins = |&byte: &u8| byte == MAGIC || is_known && short::begins_with(byte);
+                    let next = bytes.iter().skip(1).position(begins);
                     let skipped = next.map_or(bytes.len(), |next| next.wrapping_add(1));
                     self.start = self.start.wrapping_add(skipped);
                     self.skipped = self.skipped.saturating_add(skipped as u32);
+                    if is_short && !self.has_told {
+                        self.has_told = true;
+                        let nothing = Known::nothing(Coding::for_channels(1, 1));
+                        let known = self.known.as_ref().unwrap_or(&nothing);
+                        return Some((Head::unread(known), Standing::Unread));
+                    }
                 }
             }
         }
@@ -338,10 +385,4 @@ impl<const N: usize> Reader<N> {
         self.end = used.wrapping_add(count);
         *input = rest;
     }
-}
-
-/// The checksum of a frame of this length.
-fn checksum_of(bytes: &[u8], length: usize) -> u32 {
-    let last = bytes.get(length.wrapping_sub(CHECKSUM)..length).and_then(<[u8]>::first_chunk);
-    last.map_or(0, |bytes| u32::from_le_bytes(*bytes))
 }

@@ -2,7 +2,9 @@
 
 use core::fmt;
 
+use super::delta::Numbered;
 use super::pace::{CLOCK_TOLERANCE, Elapsed, Pace, slots_fit};
+use super::steps::Steps;
 use super::time::Time;
 use super::trust::Trust;
 use super::{Joint, Part, Received, Withheld};
@@ -10,7 +12,7 @@ use crate::event::{
     Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, States, Tick, addressed,
     bank_fingerprint,
 };
-use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Recovery, Sample, Scheme};
+use crate::{Code, ConfigError, Fingerprint, NeuronSpike, Polarity, Recovery, Sample, Scheme};
 
 /// The decoders of `N` channels at the end of a link, for any code.
 ///
@@ -85,12 +87,29 @@ struct Channel<D, S> {
     is_exact: bool,
     /// How many samples were decoded since the last loss.
     whole: usize,
+    /// The low bits of the step number after the last event or keyframe, if they are known.
+    step: Option<u8>,
 }
 
 impl<D, S> Channel<D, S> {
     fn mark_stale(&mut self) {
         self.is_exact = false;
         self.whole = 0;
+    }
+
+    /// Goes on to the step number of an event, and returns how many steps were lost before it, up less down: the fewest
+    /// that the low bits allow.
+    fn step(&mut self, next: Numbered, mask: u8) -> i8 {
+        let Numbered { event, number } = next;
+        let expected = self.step.map(|step| match event.polarity {
+            Polarity::Up => step.wrapping_add(1) & mask,
+            Polarity::Down => step.wrapping_sub(1) & mask,
+        });
+        self.step = number.or(expected);
+        let (Some(expected), Some(number)) = (expected, number) else { return 0 };
+        let ahead = number.wrapping_sub(expected) & mask;
+        let back = if ahead > mask / 2 { mask.wrapping_add(1) } else { 0 };
+        ahead.wrapping_sub(back).cast_signed()
     }
 }
 
@@ -166,7 +185,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             });
             let state = scheme.decoder_state();
             let value = scheme.held(&state).unwrap_or_default();
-            Channel { state, value, is_exact: false, whole: 0 }
+            Channel { state, value, is_exact: false, whole: 0, step: None }
         });
         let addresses = Addresses { first: 0, slot_ticks: 0 };
         let (sample, trust) = (Sampled::NONE, Trust::NONE);
@@ -238,23 +257,28 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         if received.is_after_break() {
             self.begin_again(received.is_start, &mut on_value);
         }
-        let period = frame.period().get().into();
+        let period = frame.period().get();
         let unit = if self.has_slots() { self.addresses.slot_ticks.max(1) } else { period };
         self.sample.pace.set(period, unit);
+        let step_mask = frame.step_mask();
         // A bank's keyframes come by rising address: one that does not rise is another bank's, or the same once more.
         let mut highest = None;
-        for keyframe in frame.keyframes() {
+        for (keyframe, number) in frame.numbered_keyframes() {
             let is_again = highest.is_some_and(|highest| keyframe.address <= highest);
             if self.keyframe(frame.time(), keyframe, is_again, &mut on_value) {
                 highest = highest.max(Some(keyframe.address));
+                self.number(keyframe.address, step_mask, number);
             }
         }
         for address in frame.heartbeats() {
             self.heartbeat(frame.time(), address, &mut on_value);
         }
         let mut events = frame.events();
-        for event in &mut events {
-            self.event(frame.time(), event, &mut on_value);
+        while let Some(next) = events.next_numbered() {
+            if step_mask > 0 {
+                self.heal(next, step_mask, &mut on_value);
+            }
+            self.event(frame.time(), next.event, &mut on_value);
         }
         if !events.is_complete() {
             self.misfits = self.misfits.saturating_add(1);
@@ -274,7 +298,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
             }
             self.trust.compare(sender);
         } else {
-            self.trust.lack(frame.is_described());
+            self.trust.lack();
         }
     }
 
@@ -313,6 +337,7 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         self.sample.is_clock_lost = false;
         if is_start {
             self.sample.pace.forget();
+            T::each_mut(&mut self.channels).for_each(|(_, channel)| channel.step = None);
         }
     }
 
@@ -457,6 +482,45 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         }
     }
 
+    /// Goes on from the step number of a keyframe.
+    fn number(&mut self, address: u16, mask: u8, number: u8) {
+        let channel = address.wrapping_sub(self.addresses.first);
+        let is_there = mask > 0 && Steps::has(address) && self.neurons() == 1;
+        if let Some((_, known)) = T::each_mut(&mut self.channels).nth(channel.into()) {
+            known.step = is_there.then_some(number & mask);
+        }
+    }
+
+    /// Takes the steps that were lost before an event, as its step number says. The value then has the bits of the
+    /// sender's in fixed point, if nothing but these steps was lost; but a frame that is missing may have said that the
+    /// sender lost events or started again, so that it is an estimate until its keyframe.
+    fn heal(
+        &mut self,
+        next: Numbered,
+        mask: u8,
+        on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
+    ) {
+        if T::Scheme::RECOVERY != Recovery::Keyframe || self.neurons() > 1 {
+            return;
+        }
+        let channel = next.event.address.wrapping_sub(self.addresses.first);
+        let Some((_, known)) = T::each_mut(&mut self.channels).nth(channel.into()) else { return };
+        let lost = known.step(next, mask);
+        if lost == 0 {
+            return;
+        }
+        if known.is_exact {
+            // No frame is missing: the sender's numbers are not those of its events.
+            self.misfits = self.misfits.saturating_add(1);
+            known.mark_stale();
+        }
+        let polarity = if lost > 0 { Polarity::Up } else { Polarity::Down };
+        let step = Event { polarity, ..next.event };
+        for _ in 0..lost.unsigned_abs() {
+            self.step_event(step, on_value);
+        }
+    }
+
     /// Takes an event of a frame of this time.
     #[inline]
     fn event(
@@ -470,16 +534,24 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         if address >= N * neurons {
             self.pass_by(event.address);
         } else if T::Scheme::RECOVERY == Recovery::Keyframe {
-            let channel = address / neurons;
-            if let Some((scheme, known)) = T::each_mut(&mut self.channels).nth(channel) {
-                let neuron = (address % neurons) as u16;
-                let firing = NeuronSpike { neuron, slot: 0, polarity: event.polarity };
-                let code = Code::assemble(core::iter::once(firing));
-                known.value = scheme.decode(&mut known.state, code);
-                on_value(channel as u16, event.tick, known.value);
-            }
+            self.step_event(event, on_value);
         } else {
             self.sampled_event(frame.nearest(event.tick), event, on_value);
+        }
+    }
+
+    /// Takes an event of a code that takes each event by itself.
+    #[inline]
+    fn step_event(&mut self, event: Event, on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>)) {
+        let address = usize::from(event.address.wrapping_sub(self.addresses.first));
+        let neurons = self.neurons();
+        let channel = address / neurons;
+        if let Some((scheme, known)) = T::each_mut(&mut self.channels).nth(channel) {
+            let neuron = (address % neurons) as u16;
+            let firing = NeuronSpike { neuron, slot: 0, polarity: event.polarity };
+            let code = Code::assemble(core::iter::once(firing));
+            known.value = scheme.decode(&mut known.state, code);
+            on_value(channel as u16, event.tick, known.value);
         }
     }
 

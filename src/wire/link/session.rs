@@ -50,7 +50,12 @@ impl Session {
 
 /// The number of the frame after this one.
 pub(super) const fn next(number: u64) -> u64 {
-    number.wrapping_add(1) & MASK
+    masked(number.wrapping_add(1))
+}
+
+/// A number modulo 2⁴⁸.
+pub(super) const fn masked(number: u64) -> u64 {
+    number & MASK
 }
 
 /// How many frames `number` comes after `next`; negative if it comes before.

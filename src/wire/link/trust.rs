@@ -22,8 +22,6 @@ const AGREE: u16 = 256;
 enum Standing {
     /// Nothing has come yet.
     Unknown,
-    /// The sender has a fingerprint, which has not come yet.
-    Awaited,
     /// The fingerprint of the receiver.
     Same,
     /// Another one.
@@ -75,10 +73,10 @@ impl Trust {
         self.standing = if is_same { Standing::Same } else { Standing::Other(sender) };
     }
 
-    /// A frame has no fingerprint; the sender may have one.
-    pub(super) fn lack(&mut self, is_described: bool) {
+    /// The sender has no fingerprint.
+    pub(super) fn lack(&mut self) {
         if self.standing == Standing::Unknown {
-            self.standing = if is_described { Standing::Awaited } else { Standing::Undescribed };
+            self.standing = Standing::Undescribed;
         }
     }
 
@@ -106,7 +104,6 @@ impl Trust {
             (Standing::Other(sender), Some(own)) => Some(Withheld::Description { own, sender }),
             (Standing::Contradicted, _) => Some(Withheld::Contradicted),
             (Standing::Same, _) if self.to_agree > 0 => Some(Withheld::Contradicted),
-            (Standing::Awaited, _) => Some(Withheld::Unknown),
             _ => None,
         }
     }

@@ -37,8 +37,6 @@ pub enum Withheld {
     Clock,
     /// The code is never exact after a start or a loss: the error fades.
     Always,
-    /// No fingerprint has come since the sender started, or since the receiver joined it.
-    Unknown,
     /// The sender has other schemes, parameters, channels or [labels](super::Receiver::with_label) than the receiver. No
     /// value is exact until a sender with the receiver's own starts.
     Description {
@@ -75,7 +73,6 @@ impl fmt::Display for Withheld {
                 "events and heartbeats are too far apart to count samples or sub-timesteps, with a clock known this well"
             ),
             Self::Always => write!(f, "the error of this code fades, and is never 0"),
-            Self::Unknown => write!(f, "no fingerprint of the sender's schemes yet"),
             Self::Description { own, sender } => write!(
                 f,
                 "the sender's schemes have the fingerprint {sender}, the receiver's {own}: they differ in code, parameters, sample type, order or label"

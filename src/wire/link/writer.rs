@@ -1,13 +1,16 @@
 //! Framer and frame writer: write frames into the caller's buffer.
 
-use core::num::NonZeroU16;
+use core::num::NonZeroU32;
 
-use super::bits::{BitWriter, Word};
-use super::delta::Place;
+use super::bits::{BitWriter, PutBits, Word};
+use super::crc::Register;
+use super::delta::{Place, ShortTime, nearest_step};
 use super::frame::{
-    CHECKSUM, FINGERPRINT, FLAGS_AT, HEADER, HEARTBEATS, LENGTH_AT, MAGIC, MAX_LENGTH, VERSION,
-    checksum, flag, keyframe_size,
+    CHECKSUM, FINGERPRINT, FLAGS_AT, HEADER, HEARTBEATS, LENGTH_AT, MAGIC, MAX_LENGTH, MIN_FRAME,
+    VERSION, flag, keyframe_size, short,
 };
+use super::known::{Known, Point};
+use super::steps::{MOST_BITS, Steps};
 use super::time::Time;
 use super::{LinkError, Session, session};
 use crate::event::{Event, Keyframe, Tick};
@@ -19,26 +22,33 @@ use crate::{Fingerprint, SampleKind};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Coding {
-    /// The time from sample to sample, in µs.
-    pub period: NonZeroU16,
+    /// The time from sample to sample, in µs, up to 16 777 215 (16.8 s); larger values count as that.
+    pub period: NonZeroU32,
     /// About the binary logarithm of the distance between neighbouring addresses that fire. 0 to 15; larger values
     /// count as 15.
     pub address_bits: u8,
     /// About the binary logarithm of the jitter of ticks in µs, plus 1 for its sign. 0 to 15; larger values count as
     /// 15.
     pub jitter_bits: u8,
+    /// How many low bits of its address's step number the first event of an address in a frame has, so that a step code
+    /// heals after a loss of fewer than half as many steps as they tell apart. 0 to 4; larger values count as 4. Addresses
+    /// from 16 on have none.
+    pub step_bits: u8,
 }
+
+/// The longest period, which takes 3 bytes.
+const LONGEST: u32 = (1 << 24) - 1;
 
 impl Coding {
     /// A coding for channels of one neuron each, sampled by a timer every `period` µs (0 counts as 1).
-    pub const fn for_channels(channels: u16, period: u16) -> Self {
-        let period = match NonZeroU16::new(period) {
+    pub const fn for_channels(channels: u16, period: u32) -> Self {
+        let period = match NonZeroU32::new(period) {
             Some(period) => period,
-            None => NonZeroU16::MIN,
+            None => NonZeroU32::MIN,
         };
         // Best if few channels fire at a time; if many do, an event takes a bit or two more.
         let address_bits = (u16::BITS - (channels / 8).leading_zeros()) as u8;
-        Self { period, address_bits, jitter_bits: 0 }
+        Self { period, address_bits, jitter_bits: 0, step_bits: 0 }
     }
 
     /// Sets the [bits for the jitter](Self::jitter_bits).
@@ -47,14 +57,25 @@ impl Coding {
         Self { jitter_bits, ..self }
     }
 
+    /// Sets the [bits for step numbers](Self::step_bits).
+    #[must_use]
+    pub const fn with_step_bits(self, step_bits: u8) -> Self {
+        Self { step_bits, ..self }
+    }
+
     const fn within_limits(self) -> Self {
-        const fn nibble(bits: u8) -> u8 {
-            if bits > 15 { 15 } else { bits }
+        const fn at_most(most: u8, bits: u8) -> u8 {
+            if bits > most { most } else { bits }
         }
+        let period = match NonZeroU32::new(LONGEST) {
+            Some(longest) if self.period.get() > LONGEST => longest,
+            _ => self.period,
+        };
         Self {
-            address_bits: nibble(self.address_bits),
-            jitter_bits: nibble(self.jitter_bits),
-            ..self
+            period,
+            address_bits: at_most(15, self.address_bits),
+            jitter_bits: at_most(15, self.jitter_bits),
+            step_bits: at_most(MOST_BITS, self.step_bits),
         }
     }
 
@@ -62,8 +83,28 @@ impl Coding {
         self.jitter_bits << 4 | self.address_bits
     }
 
-    pub(super) const fn from_byte(period: NonZeroU16, byte: u8) -> Self {
-        Self { period, address_bits: byte & 0xF, jitter_bits: byte >> 4 }
+    pub(super) fn from_bytes(period: NonZeroU32, byte: u8, step_bits: u8) -> Option<Self> {
+        let coding = Self { period, address_bits: byte & 0xF, jitter_bits: byte >> 4, step_bits };
+        (step_bits <= MOST_BITS).then_some(coding)
+    }
+
+    /// How many low bits of a sample's number on the grid tell between one and two seconds, 16 at most.
+    #[inline]
+    pub(super) const fn grid_bits(self) -> u32 {
+        // 21 less the bits of the period.
+        let bits = self.period.leading_zeros().saturating_sub(u32::BITS - 21);
+        if bits > 16 { 16 } else { bits }
+    }
+
+    #[inline]
+    pub(super) const fn grid_mask(self) -> u32 {
+        1_u32.wrapping_shl(self.grid_bits()).wrapping_sub(1)
+    }
+
+    /// The bits that a step number has on the wire.
+    #[inline]
+    pub(super) const fn step_mask(self) -> u8 {
+        1_u8.wrapping_shl(self.step_bits as u32).wrapping_sub(1)
     }
 }
 
@@ -95,30 +136,39 @@ pub struct Framer {
     /// The flags of the next frame.
     flags: u8,
     leaps: u32,
-    fingerprint: Fingerprint,
-    /// The tick of the last frame with the fingerprint, and how many frames came since.
-    told_at: Tick,
-    untold: u8,
+    fingerprint: Option<Fingerprint>,
+    /// What a receiver of the last frame knows; without meaning before the first.
+    known: Known,
+    /// The tick of the last full frame.
+    full_at: Tick,
+    full_every: u32,
+    /// How many further frames are full, as the first of a session may be lost.
+    full_ahead: u8,
+    steps: Steps,
 }
 
-/// The fingerprint goes into a frame that comes this many µs (0.52 s) after the last one that had it, or later.
-const TELL_AFTER: u32 = 1 << 19;
+/// A frame is full that comes this many µs (0.52 s) after the last full one, or later.
+const FULL_EVERY: u32 = 1 << 19;
 
-/// The fingerprint goes into every fourth frame at most, if that has keyframes.
-const TELL_EVERY: u8 = 4;
+/// So many frames are full at the beginning of a session.
+const FULL_FIRST: u8 = 4;
 
 impl Framer {
     /// A framer before the first frame of this session.
     pub const fn new(coding: Coding, session: Session) -> Self {
+        let coding = coding.within_limits();
         Self {
-            coding: coding.within_limits(),
+            coding,
             number: session.first_number(),
             time: Time::from_micros(0),
             flags: flag::FIRST,
             leaps: 0,
-            fingerprint: Fingerprint::from_bits(0),
-            told_at: Tick::from_micros(0),
-            untold: 0,
+            fingerprint: None,
+            known: Known::nothing(coding),
+            full_at: Tick::from_micros(0),
+            full_every: FULL_EVERY,
+            full_ahead: FULL_FIRST,
+            steps: Steps::ZERO,
         }
     }
 
@@ -126,18 +176,24 @@ impl Framer {
     /// [`Transmitter::with_fingerprint`](super::Transmitter::with_fingerprint).
     #[must_use]
     pub const fn with_fingerprint(self, fingerprint: Fingerprint) -> Self {
-        Self { fingerprint, flags: self.flags | flag::DESCRIBED, ..self }
+        Self { fingerprint: Some(fingerprint), ..self }
+    }
+
+    /// Sets how often frames are full: see [`Transmitter::with_full_every`](super::Transmitter::with_full_every).
+    #[must_use]
+    pub const fn with_full_every(self, micros: u32) -> Self {
+        Self { full_every: micros, ..self }
+    }
+
+    /// Sets the [bits for step numbers](Coding::step_bits), before the first frame.
+    #[must_use]
+    pub const fn with_step_bits(self, step_bits: u8) -> Self {
+        Self { coding: self.coding.with_step_bits(step_bits).within_limits(), ..self }
     }
 
     /// The fingerprint, if there is one.
     pub(super) const fn fingerprint(&self) -> Option<Fingerprint> {
-        if self.flags & flag::DESCRIBED != 0 { Some(self.fingerprint) } else { None }
-    }
-
-    /// Whether a frame at this tick has the fingerprint, with or without keyframes.
-    fn must_tell(&self, tick: Tick) -> bool {
-        let since = tick.micros().wrapping_sub(self.told_at.micros());
-        self.flags & flag::DESCRIBED != 0 && (self.flags & flag::FIRST != 0 || since >= TELL_AFTER)
+        self.fingerprint
     }
 
     /// Marks the next frame as one before which items were lost, or encoders changed without events.
@@ -170,50 +226,135 @@ impl Framer {
     /// [finished](FrameWriter::finish) takes no number.
     ///
     /// # Errors
-    /// Returns [`LinkError::Full`] if the buffer is shorter than [`MIN_FRAME`](super::MIN_FRAME).
+    /// Returns [`LinkError::Full`] if the buffer is shorter than [`MIN_FRAME`](super::MIN_FRAME), and a fingerprint if
+    /// there is one.
     pub fn start<'f, 'a>(
         &'f mut self,
         tick: Tick,
         buffer: &'a mut [u8],
     ) -> Result<FrameWriter<'f, 'a>, LinkError> {
-        let limit = buffer.len().checked_sub(CHECKSUM).ok_or(LinkError::Full)?;
-        if self.flags & flag::FIRST != 0 {
-            self.time = Time::from_micros(tick.micros().into());
-        } else {
-            self.go_to(tick);
-        }
-        let [n0, n1, n2, n3, n4, n5, _, _] = self.number.to_le_bytes();
-        let [t0, t1, t2, t3, t4, t5, _, _] = self.time.micros().to_le_bytes();
-        let coding = self.coding;
-        let [p0, p1] = coding.period.get().to_le_bytes();
-        let code = coding.byte();
-        let header = [MAGIC, 0, n0, n1, n2, n3, n4, n5, t0, t1, t2, t3, t4, t5, p0, p1, code, 0];
+        self.begin(tick, false, buffer)
+    }
 
+    /// Starts a frame that begins with keyframes or heartbeats, or that does not.
+    #[allow(clippy::inline_always)] // a frame that is being written would be copied twice
+    #[inline(always)]
+    pub(super) fn begin<'f, 'a>(
+        &'f mut self,
+        tick: Tick,
+        has_keyframes: bool,
+        buffer: &'a mut [u8],
+    ) -> Result<FrameWriter<'f, 'a>, LinkError> {
+        let least = if self.fingerprint.is_some() { MIN_FRAME + FINGERPRINT } else { MIN_FRAME };
+        let Some(limit) = buffer.len().checked_sub(CHECKSUM) else { return Err(LinkError::Full) };
+        if buffer.len() < least {
+            return Err(LinkError::Full);
+        }
         let mut bytes = Cursor::new(buffer);
-        bytes.set_limit(limit.min(HEADER + MAX_LENGTH));
-        bytes.put(&header).ok_or(LinkError::Full)?;
-        let flags = self.flags;
-        let must_tell = self.must_tell(tick);
-        let bits = BitWriter::new(bytes);
-        let mut frame = FrameWriter {
+        let opening = self.open(tick, has_keyframes, limit, &mut bytes);
+        let Opening { point, lead, flags } = opening;
+        let (coding, steps) = (self.coding, self.steps);
+        Ok(FrameWriter {
             framer: self,
-            bits,
+            bits: BitWriter::new(bytes),
             flags,
+            is_short: lead.is_some(),
             tick,
+            point,
+            lead,
             run: None,
             keyframes: 0,
             events: 0,
             place: Place::new(coding, tick),
-        };
-        if must_tell {
-            frame.tell();
-        }
-        Ok(frame)
+            steps,
+        })
     }
+
+    /// Writes the header of a frame.
+    #[inline(never)]
+    fn open(
+        &mut self,
+        tick: Tick,
+        has_keyframes: bool,
+        limit: usize,
+        bytes: &mut Cursor<'_>,
+    ) -> Opening {
+        if self.flags & flag::FIRST != 0 {
+            self.time = Time::from_micros(tick.micros().into());
+            let point = Point { time: self.time, count: 0 };
+            return self.open_full(point, 0, limit, bytes);
+        }
+        self.go_to(tick);
+        let before = self.known.point;
+        // A silence is no longer than a leap, and a longer one begins a grid of its own.
+        let since = i32::try_from(self.time.since(before.time)).unwrap_or(i32::MAX);
+        let (steps, jitter) = nearest_step(since, self.coding.period);
+        let point = before.later(steps, self.coding);
+        let since_full = i64::from(tick.since(self.full_at));
+        let every = if has_keyframes { self.full_every / 2 } else { self.full_every };
+        let is_due = self.full_ahead > 0
+            || self.flags & flag::LOST != 0
+            || every == 0
+            || since_full >= i64::from(every);
+        if !is_due && self.known.can_tell(steps) {
+            let time = ShortTime { count: point.count, jitter };
+            let mut lead = Word::default();
+            time.put(self.coding, &mut lead);
+            if lead.is_whole() {
+                // A byte is left for the length.
+                bytes.set_limit(limit.saturating_sub(1).min(short::HEADER + MAX_LENGTH));
+                let _ = bytes.put(&[0; short::HEADER]);
+                return Opening { point, lead: Some(lead), flags: 0 };
+            }
+        }
+        self.open_full(point, jitter, limit, bytes)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn open_full(
+        &self,
+        point: Point,
+        jitter: i32,
+        limit: usize,
+        bytes: &mut Cursor<'_>,
+    ) -> Opening {
+        // A time far from its point begins the grid anew, as half of a long period may be.
+        let is_near = self.time.since(point.time) == i64::from(jitter);
+        let jitter = i16::try_from(jitter).ok().filter(|_| is_near);
+        let point = if jitter.is_some() { point } else { Point { time: self.time, ..point } };
+        let [n0, n1, n2, n3, n4, n5, _, _] = self.number.to_le_bytes();
+        let [t0, t1, t2, t3, t4, t5, _, _] = self.time.micros().to_le_bytes();
+        let [p0, p1, p2, _] = self.coding.period.get().to_le_bytes();
+        let (code, step) = (self.coding.byte(), self.coding.step_bits);
+        let [c0, c1, _, _] = point.count.to_le_bytes();
+        let [j0, j1] = jitter.unwrap_or(0).to_le_bytes();
+        bytes.set_limit(limit.min(HEADER + MAX_LENGTH));
+        let _ = bytes.put(&[
+            MAGIC, 0, n0, n1, n2, n3, n4, n5, t0, t1, t2, t3, t4, t5, p0, p1, p2, code, step, c0,
+            c1, j0, j1, 0,
+        ]);
+        let mut flags = self.flags;
+        if let Some(fingerprint) = self.fingerprint {
+            flags |= flag::FINGERPRINT;
+            let _ = bytes.put(&fingerprint.bits().to_le_bytes());
+        }
+        Opening { point, lead: None, flags }
+    }
+}
+
+/// The beginning of a frame: its point on the grid, the bits of its time in a short one, and its flags.
+struct Opening {
+    point: Point,
+    lead: Option<Word>,
+    flags: u8,
 }
 
 /// The bytes before the first keyframe or heartbeat: how many there are, and their sample type.
 const RUN_HEADER: usize = 2;
+
+/// The most bytes that the time of a short frame takes.
+const LEAD: usize = 4;
 
 /// A run of keyframes in this sample type, or of heartbeats, which have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -225,12 +366,17 @@ pub struct FrameWriter<'f, 'a> {
     framer: &'f mut Framer,
     bits: BitWriter<'a>,
     flags: u8,
+    is_short: bool,
     tick: Tick,
+    point: Point,
+    /// The bits of a short frame's time, until they are written.
+    lead: Option<Word>,
     /// The kind of the frame's keyframes or heartbeats; `None` before the first.
     run: Option<Run>,
     keyframes: u8,
     events: u32,
     place: Place,
+    steps: Steps,
 }
 
 impl<'a> FrameWriter<'_, 'a> {
@@ -252,19 +398,15 @@ impl<'a> FrameWriter<'_, 'a> {
         self.entry(tick, address, None, 0)
     }
 
-    /// Appends the fingerprint if there is room.
-    #[cold]
-    #[inline(never)]
-    fn tell(&mut self) {
-        if self.bits.room() >= FINGERPRINT {
-            self.bits.put_bytes(&self.framer.fingerprint.bits().to_le_bytes());
-            self.flags |= flag::FINGERPRINT;
-        }
-    }
-
     /// Where the keyframes begin.
     const fn run_at(&self) -> usize {
-        if self.flags & flag::FINGERPRINT != 0 { HEADER + FINGERPRINT } else { HEADER }
+        if self.is_short {
+            short::HEADER
+        } else if self.flags & flag::FINGERPRINT != 0 {
+            HEADER + FINGERPRINT
+        } else {
+            HEADER
+        }
     }
 
     fn entry(
@@ -278,24 +420,26 @@ impl<'a> FrameWriter<'_, 'a> {
         if self.events > 0 || tick != self.tick || self.run.is_some_and(|first| first != entry) {
             return Err(LinkError::KeyframeOrder);
         }
+        let coding = self.framer.coding;
         let run = if self.run.is_none() { RUN_HEADER } else { 0 };
-        if self.keyframes == u8::MAX || run + keyframe_size(kind) > self.bits.room() {
+        let lead = if self.lead.is_some() { LEAD } else { 0 };
+        let has_begun = self.is_short && self.lead.is_none();
+        let size = keyframe_size(kind, coding);
+        if self.keyframes == u8::MAX || has_begun || run + size + lead > self.bits.room() {
             return Err(LinkError::Full);
         }
         if self.run.is_none() {
-            let is_due = self.flags & (flag::DESCRIBED | flag::FINGERPRINT) == flag::DESCRIBED
-                && self.framer.untold >= TELL_EVERY - 1;
-            if is_due && run + keyframe_size(kind) + FINGERPRINT <= self.bits.room() {
-                self.tell();
-            }
             self.run = Some(entry);
             self.flags |= flag::KEYFRAMES;
             self.bits.put_bytes(&[0, kind.map_or(HEARTBEATS, SampleKind::to_byte)]);
         }
-        let [a0, a1] = address.to_le_bytes();
-        let [b0, b1, b2, b3] = bits.to_le_bytes();
-        let bytes = [a0, a1, b0, b1, b2, b3];
-        self.bits.put_bytes(bytes.get(..keyframe_size(kind)).unwrap_or_default());
+        self.bits.put_bytes(&address.to_le_bytes());
+        if let Some(kind) = kind {
+            self.bits.put_bytes(bits.to_le_bytes().get(..kind.size()).unwrap_or_default());
+            if coding.step_bits > 0 {
+                self.bits.put_bytes(&[self.steps.number(address, coding.step_mask())]);
+            }
+        }
         self.keyframes = self.keyframes.saturating_add(1);
         Ok(())
     }
@@ -312,27 +456,51 @@ impl<'a> FrameWriter<'_, 'a> {
     /// Appends an event; `None` if it does not fit.
     #[inline(never)]
     pub(super) fn put(&mut self, event: Event) -> Option<()> {
+        self.put_lead();
+        let steps = if self.place.has_numbers() { self.steps.after(event) } else { self.steps };
         let mut word = Word::default();
         self.place.put(event, self.tick, &mut word)?;
+        if let Some(number) = self.number(event, steps) {
+            word.put(number.into(), self.framer.coding.step_bits.into());
+        }
         if self.bits.put_word(word).is_none() {
-            self.put_long(event)?;
+            self.put_long(event, steps)?;
         }
         self.place.pass(event);
+        self.steps = steps;
         self.events = self.events.wrapping_add(1);
         Some(())
+    }
+
+    /// The low bits of its address's step number that go with an event, after which these are the step numbers.
+    #[inline]
+    fn number(&self, event: Event, steps: Steps) -> Option<u8> {
+        let has_number = self.place.has_number(event.address);
+        has_number.then(|| steps.number(event.address, self.framer.coding.step_mask()))
     }
 
     /// Appends an event that is too long for a word; `None` if it does not fit.
     #[cold]
     #[inline(never)]
-    fn put_long(&mut self, event: Event) -> Option<()> {
+    fn put_long(&mut self, event: Event, steps: Steps) -> Option<()> {
         let mark = self.bits.mark();
         self.place.put(event, self.tick, &mut self.bits)?;
+        if let Some(number) = self.number(event, steps) {
+            self.bits.put(number.into(), self.framer.coding.step_bits.into());
+        }
         if !self.bits.is_within_limit() {
             self.bits.back_to(mark);
             return None;
         }
         Some(())
+    }
+
+    /// Appends the time of a short frame, behind its keyframes. There is room for it.
+    #[inline]
+    fn put_lead(&mut self) {
+        if let Some(lead) = self.lead.take() {
+            let _ = self.bits.put_word(lead);
+        }
     }
 
     /// How many events it has.
@@ -347,27 +515,51 @@ impl<'a> FrameWriter<'_, 'a> {
 
     /// Closes the frame and returns its bytes, ready to send. The frame takes its number: if it is not sent, the reader
     /// sees a gap.
-    pub fn finish(self) -> &'a [u8] {
+    #[allow(clippy::inline_always)] // the frame would be copied
+    #[inline(always)]
+    pub fn finish(mut self) -> &'a [u8] {
+        self.close();
+        self.bits.into_slice()
+    }
+
+    /// Writes what is known at the end alone.
+    #[inline(never)]
+    fn close(&mut self) {
+        self.put_lead();
         let run_at = self.run_at();
-        let mut bytes = self.bits.finish();
-        let length = bytes.written().saturating_sub(HEADER) as u8;
-        bytes.replace(FLAGS_AT, VERSION << 4 | self.flags);
-        bytes.replace(LENGTH_AT, length);
+        let Self { framer, is_short, .. } = self;
+        let bytes = self.bits.finish();
         if self.keyframes > 0 {
             bytes.replace(run_at, self.keyframes);
         }
+        let register = if *is_short {
+            let length = bytes.written().saturating_sub(short::HEADER) as u8;
+            let first =
+                if self.keyframes > 0 { short::MAGIC | short::KEYFRAMES } else { short::MAGIC };
+            let [low, ..] = framer.number.to_le_bytes();
+            bytes.replace(1, low);
+            if length > short::LENGTH {
+                bytes.replace(0, first | short::LENGTH);
+                bytes.insert(1, length);
+            } else {
+                bytes.replace(0, first | length.wrapping_sub(1) & short::LENGTH);
+            }
+            framer.known.go_to(framer.number, self.point)
+        } else {
+            bytes.replace(FLAGS_AT, VERSION << 4 | self.flags);
+            bytes.replace(LENGTH_AT, bytes.written().saturating_sub(HEADER) as u8);
+            framer.full_at = self.tick;
+            framer.full_ahead = framer.full_ahead.saturating_sub(1);
+            framer.known = Known::new(framer.coding, framer.fingerprint, framer.number, self.point);
+            Register::START
+        };
+        let checksum = register.after(bytes.as_slice()).checksum();
         bytes.set_limit(usize::MAX);
-        let checksum = checksum(bytes.as_slice());
         // There is room, which the limit kept free.
         let _ = bytes.put(&checksum.to_le_bytes());
-        self.framer.number = session::next(self.framer.number);
-        self.framer.time = self.framer.time.nearest(self.place.tick());
-        self.framer.flags = self.flags & flag::DESCRIBED;
-        if self.flags & flag::FINGERPRINT == 0 {
-            self.framer.untold = self.framer.untold.saturating_add(1);
-        } else {
-            (self.framer.untold, self.framer.told_at) = (0, self.tick);
-        }
-        bytes.into_slice()
+        framer.number = session::next(framer.number);
+        framer.time = framer.time.nearest(self.place.tick());
+        framer.flags = 0;
+        framer.steps = self.steps;
     }
 }

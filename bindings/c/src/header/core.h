@@ -155,10 +155,15 @@ typedef struct sw_writer {
 
 /* For so many channels, a sample every `period` microseconds, and a session that no other start has: the starts so far,
  * counted in flash, or 64 random bits. A constant would let a receiver go on from the values of an earlier start. */
-sw_status sw_writer_init(sw_writer *writer, uint16_t channels, uint16_t period, uint64_t session);
+sw_status sw_writer_init(sw_writer *writer, uint16_t channels, uint32_t period, uint64_t session);
 /* Sends the fingerprint of what both ends know of the flight, before the first frame: a receiver with another one calls no
  * value exact. */
 sw_status sw_writer_describe(sw_writer *writer, uint32_t fingerprint);
+/* Sends so many bits, 0 to 4, of a channel's step number with its first event of a frame, so that a step code's values heal
+ * after lost frames without waiting for a keyframe. Before the first frame. */
+sw_status sw_writer_heal(sw_writer *writer, uint8_t bits);
+/* Lets events wait for others in the queue, up to so many microseconds by `sw_writer_observe`, so that fewer frames go. */
+sw_status sw_writer_gather(sw_writer *writer, uint32_t micros);
 /* Tells the time in microseconds, wrapping. Needed at least every 17.9 minutes in which no item is written. */
 sw_status sw_writer_observe(sw_writer *writer, uint32_t now);
 /* Writes a frame of what the queue holds, or SW_NOTHING. SW_MAX_FRAME bytes are room enough. */

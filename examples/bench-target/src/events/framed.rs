@@ -10,7 +10,7 @@ use board::stopwatch::{counted, keep};
 use fixed::{FixedI32, types::extra::U16};
 use spikewire::{
     Decoder, Event, FromEvents, Scheme,
-    link::{Coding, FrameView, MAX_FRAME, Reader, Receiver, Session, Transmitter},
+    link::{Coding, MAX_FRAME, Reader, Receiver, Session, Transmitter},
     temporal::StepForward,
 };
 
@@ -84,7 +84,7 @@ impl<'a> Link<'a> {
     fn new(floats: &'a Steps<f32>, fixed: &'a Steps<FixedI32<U16>>) -> Self {
         Self {
             transmitter: Transmitter::new(
-                Coding::for_channels(CHANNELS as u16, PERIOD),
+                Coding::for_channels(CHANNELS as u16, PERIOD.into()),
                 Session::counted(1),
             ),
             reader: Reader::new(),
@@ -112,7 +112,9 @@ impl<'a> Link<'a> {
         }
 
         let bytes = &buffer[..length];
-        let Ok((frame, _)) = FrameView::new(bytes) else { return taken };
+        let (mut reader, mut sent) = (self.reader.clone(), bytes);
+        let Some(received) = reader.next_frame(&mut sent) else { return taken };
+        let frame = received.frame;
         let mut count = 0;
         for event in frame.events() {
             self.received.add(event);

@@ -125,7 +125,7 @@ struct Way<'a, P: Start> {
 impl<'a, P: Start<Sample: Measured>> Way<'a, P> {
     fn new(schemes: &'a Schemes<P>, period: u16) -> Self {
         let bank = schemes.bank();
-        let transmitter = Transmitter::for_bank(&bank, period, Session::counted(1));
+        let transmitter = Transmitter::for_bank(&bank, period.into(), Session::counted(1));
         Self {
             bank,
             transmitter,

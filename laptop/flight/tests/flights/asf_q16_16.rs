@@ -41,7 +41,7 @@ pub mod flight {
     pub const LABEL: &str = "5000 us; gyro_x [rad/s] 1; gyro_y [rad/s] 1; gyro_z [rad/s] 1; accel_x [m/s²] 1; accel_y [m/s²] 1; accel_z [m/s²] 1";
 
     /// Time from one sample to the next, in µs.
-    pub const PERIOD: u16 = 5000;
+    pub const PERIOD: u32 = 5000;
 
     /// Number of samples from one keyframe or heartbeat to the next.
     pub const KEYFRAME_EVERY: u32 = 4;

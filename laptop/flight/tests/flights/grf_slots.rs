@@ -35,7 +35,7 @@ pub mod flight {
     pub const LABEL: &str = "4000 us; gyro_x [rad/s] 939; gyro_y [rad/s] 939; gyro_z [rad/s] 939; accel_x [m/s²] 204; accel_y [m/s²] 204; accel_z [m/s²] 204";
 
     /// Time from one sample to the next, in µs.
-    pub const PERIOD: u16 = 4000;
+    pub const PERIOD: u32 = 4000;
 
     /// Number of samples from one keyframe or heartbeat to the next.
     pub const KEYFRAME_EVERY: u32 = 25;

@@ -35,7 +35,7 @@ pub mod flight {
     pub const LABEL: &str = "2000 us; gyro_x [rad/s] 100000; gyro_y [rad/s] 100000; gyro_z [rad/s] 100000; accel_x [m/s²] 100000; accel_y [m/s²] 100000; accel_z [m/s²] 100000";
 
     /// Time from one sample to the next, in µs.
-    pub const PERIOD: u16 = 2000;
+    pub const PERIOD: u32 = 2000;
 
     /// Number of samples from one keyframe or heartbeat to the next.
     pub const KEYFRAME_EVERY: u32 = 10;

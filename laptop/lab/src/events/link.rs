@@ -84,7 +84,13 @@ fn take(
     values: Option<&mut (dyn Values + '_)>,
     items: &mut Vec<Item>,
 ) {
-    let Received { gap, is_start, frame } = received;
+    let Received { gap, is_start, is_unread, frame } = received;
+    if *is_unread {
+        if let Some(values) = values {
+            values.apply(received, items);
+        }
+        return;
+    }
     if let Some(gap) = gap {
         tally.gaps += 1;
         items.push(Item::LostFrames(gap.lost_frames));
