@@ -9,7 +9,7 @@ const text = (value) => String(Number(value.toPrecision(6)));
 /** A setting for the channels that are open: another log has the bank that flew anew, and nothing of what was set for the axes of the one before. */
 export function suited(setting) {
   const { opened, topic, field } = state.recording, fields = siblings(opened.topics, topic);
-  if (setting.isFlown) return fields.every((own) => setting.own?.[own]) ? setting : asFlown(setting);
+  if (setting.isFlown) return asFlown(setting);
   if (!setting.own || [field, ...fields].some((own) => setting.own[own])) return setting;
   const { own, basis, ...rest } = setting;
   return rest;
