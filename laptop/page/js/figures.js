@@ -12,23 +12,26 @@ const instructions = ({ instructions: count, is_bound: isBound }) => (count === 
 
 /** The clock of the core whose share is shown, in Hz, at one instruction a cycle. */
 const CLOCK = 168e6;
-/** Bytes of a raw frame beside its samples, and of a sample. */
-const FRAME = 4, SAMPLE = 2;
+/** Bytes of a lean raw frame beside its sample: a start, a number and a checksum. */
+const FRAME = 4;
 
-/** What raw frames of one channel take, in bytes a second. */
-export const rawBytes = (rate) => rate * (FRAME + SAMPLE);
+/** Bytes a second of one channel's raw frames, one each period, with samples of a type such as `f32` or `q8.8`. */
+function rawBytes(rate, type) {
+  const bits = type.match(/\d+/g).reduce((sum, part) => sum + Number(part), 0);
+  return rate * (FRAME + bits / 8);
+}
 
 /** A share in percent, to three digits. */
 const percent = (share) => (Number.isFinite(share) ? `${Number((100 * share).toPrecision(3))} %` : "–");
 
 /** The four figures of what came of a setting; none of a preview but those that its knob does not change. */
-export function showTiles(run, { rate: measured, uneven }, unit) {
+export function showTiles(run, { rate: measured, uneven }, { sample, unit }) {
   const rate = uneven ? undefined : measured;
   const share = run && rate && run.costs.instructions !== null ? (run.costs.instructions * rate) / CLOCK : NaN;
   const isKnown = run && !run.isPreview;
   const whole = (value) => (isKnown ? value : run ? "…" : "–");
   const tiles = [
-    ["Bytes a second", whole(fixed(run?.linkBytesPerSecond, 0)), rate ? `raw frames: ${fixed(rawBytes(rate), 0)}` : uneven ? "the rate is not sure" : "the rate is unknown"],
+    ["Bytes a second", whole(fixed(run?.linkBytesPerSecond, 0)), rate ? `raw frames: ${fixed(rawBytes(rate, sample), 0)}` : uneven ? "the rate is not sure" : "the rate is unknown"],
     [`Error${unit ? `, ${unit}` : ""}`, whole(fine(run?.figures.rmse)), isKnown ? `${fixed(run.figures.snr, 1)} dB` : " "],
     ["Late by", run ? `${fixed(late(run, rate), 1)} ${rate ? "ms" : "samples"}` : "–", run && rate ? `${fixed(phase(run, rate), 1)}° at ${state.bandwidth} Hz` : " "],
     ["Share of the core", percent(share), "M4F at 168 MHz"],
@@ -46,7 +49,7 @@ export function showFigures(good, { rate: measured, uneven }, given) {
     ["Spikes", ({ figures }) => fixed(figures.spikes, 0)],
     ["Spikes a second", ({ figures }) => fixed(figures.spikes_per_second, 1)],
     ["Bytes a second, with keyframes", ({ linkBytesPerSecond }) => fixed(linkBytesPerSecond, 1)],
-    ["Bytes a second, raw frames", () => fixed(rate && rawBytes(rate), 1)],
+    ["Bytes a second, raw frames", ({ setting }) => fixed(rate && rawBytes(rate, setting.sample), 1)],
     ["Bytes of RAM a channel", ({ costs }) => fixed(costs.ram, 0)],
     ["Instructions a sample, Cortex-M4F", ({ costs }) => instructions(costs)],
     ["Instructions a sample, Cortex-M0", ({ costsWithoutFpu }) => instructions(costsWithoutFpu)],

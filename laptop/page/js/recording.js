@@ -52,6 +52,7 @@ async function openNow({ files: given = [], example }, wanted = {}) {
     const files = await Promise.all(given.map(readable));
     const answer = await library.ask(openRequest({ example, files, table: state.table }), { files, onProgress });
     if (library !== state.library) return;
+    if (!answer.topics.some(({ fields }) => fields.length)) throw new Error("it has no channel of numbers beside times and counts: open another file, or say the header line");
     Object.assign(state, { opened: { ...answer, example, files, table: state.table }, isDamaged: state.acceptsCut && state.isDamaged, channel: channelOf(answer.topics, wanted) });
     await load();
   } catch (error) {

@@ -30,9 +30,9 @@ function tab(setting, place) {
     const to = { ArrowRight: place + 1, ArrowLeft: place - 1, Home: 0, End: settings.length - 1 }[event.key];
     if (settings[to]) acts.choose(to);
   };
-  const { title } = schemeOf(setting), words = settings.length > 1 ? letter(place) : title;
+  const { title } = schemeOf(setting), words = settings.length > 1 ? html`${letter(place)}<span class="away">: ${title}</span>` : title;
   return html`<button type="button" role="tab" id="tab-${place}" aria-controls="panel" aria-selected=${isChosen} tabindex=${isChosen ? 0 : -1}
-    aria-label="${letter(place)}: ${title}" title=${title} data-colour=${COLOURS[place]} @click=${() => acts.choose(place)} @keydown=${step}>${words}</button>`;
+    title=${title} data-colour=${COLOURS[place]} @click=${() => acts.choose(place)} @keydown=${step}>${words}</button>`;
 }
 
 function card([name, need]) {
@@ -84,9 +84,12 @@ function coded() {
   });
 }
 
+/** Why a channel that never changes is not coded. */
+const flatness = ({ name, min }) => new Error(`${name} is ${min} in all its samples, which leaves nothing to code: choose another channel.`);
+
 function showVerdict(setting) {
   const { recording } = state, answer = answered(state.current), chip = at("chip"), { error } = outcome();
-  const { chip: words, tone = "", reason } = answer ? verdict(setting, answer) : { chip: error ? "Not coded" : "…", reason: error?.message ?? "" };
+  const { chip: words, tone = "", reason } = answer ? verdict(setting, answer) : { chip: error ? "Not coded" : "…", reason: error ? "These settings do not code this channel: see below the slider." : "" };
   chip.hidden = !recording;
   chip.textContent = words;
   chip.dataset.tone = tone;
@@ -112,13 +115,13 @@ export function showSettings() {
   at("as-flown").hidden = !canFly(setting);
   showBoxes(setting, scheme, unit);
   showBank(setting);
-  fail("error", error);
+  fail("error", error && recording.min === recording.max ? flatness(recording) : error);
   const { basis } = setting, scaled = basis ? [`Found on ${basis}; ranges, and thresholds of another quantity, are scaled to each axis's own signal: look at each.`] : [];
   render([...scaled, ...(answer?.notes ?? [])].map((words) => html`<li>${words}</li>`), at("notes"));
   showVerdict(setting);
   const good = coded();
   render([entry("signal", "--signal"), ...good.map(({ name, variable, isPart }) => entry(`${name}, decoded${isPart ? " in part" : ""}`, variable))], at("legend"));
-  showTiles(good.find((run) => run.setting === setting), recording, unit);
+  showTiles(good.find((run) => run.setting === setting), recording, { sample: setting.sample, unit });
   showFigures(good, recording, unit);
   plots.setRuns(good, state.hidden);
   band.show(error ? undefined : threshold(setting, scheme), unit);

@@ -33,8 +33,14 @@ async function search(work) {
 /** Ends the search of a recording that is looked at no more. */
 export const endSearch = () => thread?.stop();
 
+/** Milliseconds between two looks at the progress: thousands of settings a second would leave the page no time for anything else. */
+const OFTEN = 150;
+let shownAt = 0;
+
 const onProgress = (before, of, name) => ({ done, total, words }) => {
   state.searching = { share: (before + done / total) / of, words: `${words ?? name}: ${done} of ${total} settings` };
+  if (performance.now() - shownAt < OFTEN) return;
+  shownAt = performance.now();
   changed();
 };
 

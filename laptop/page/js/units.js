@@ -38,12 +38,12 @@ export function setAnswer(recording, field, unit) {
   }
 }
 
-/** The unit that the log or the name of its field tells. */
+/** The unit that the log or the name of its field tells. One that no such sensor has, as m/s read out of m s^-2, is none. */
 export function toldUnit(recording, field) {
-  const { opened, topic } = recording;
-  if (field === recording.field && recording.told) return recording.told;
-  const own = opened.topics.find(({ name }) => name === topic), unit = own?.units[own.fields.indexOf(field)];
-  if (unit) return unit;
+  const { opened, topic } = recording, isSensor = isInertial(recording, field);
+  const own = opened.topics.find(({ name }) => name === topic), units = [field === recording.field ? recording.told : "", own?.units[own.fields.indexOf(field)]];
+  const unit = units.find((each) => each && (!isSensor || each in PER_SI));
+  if (unit || !isSensor) return unit;
   return opened.example || SI.test(opened.file) ? CHOICES[sensorOf(recording, field)][0] : undefined;
 }
 

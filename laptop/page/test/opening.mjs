@@ -194,6 +194,14 @@ export const steps = {
     await settled(page);
     assert.equal(await page.evaluate(() => document.getElementById("picture").inert), false);
     assert.equal(await page.textContent("#file-error"), "");
+    // A flat channel, a single sample, and a file without a channel: a sentence, and the page goes on.
+    for (const [name, bytes, id, words] of [
+      ["flat.csv", "x\n1\n1\n1\n", "error", /^x is 1 in all its samples, .* choose another channel/], ["one.csv", "x\n5\n", "error", /^x is 5 in all its samples/],
+      ["none.csv", "time_us\n1\n2\n", "file-error", /^none\.csv: it has no channel of numbers .* open another file/],
+    ]) {
+      await drop(page, { name, bytes: Buffer.from(bytes) });
+      assert.match(await page.textContent(`#${id}`), words);
+    }
     await page.context().close();
   },
 };

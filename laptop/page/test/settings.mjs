@@ -110,6 +110,10 @@ export const steps = {
     await choose(other, flight);
     await other.evaluate((hash) => (location.hash = hash), new URL(link).hash);
     await settled(other);
+    // The settings of the link stand as they are, and the unit is asked for here too.
+    const numbers = (words) => words.replace("RMSE, m/s²", "RMSE");
+    assert.equal(await other.textContent("#figures"), numbers(figures));
+    await say(other, "m/s²");
     assert.equal(await other.textContent("#figures"), figures);
     await other.selectOption("#scheme", "hsa");
     await other.selectOption("#filter", "none");
@@ -199,7 +203,7 @@ export const steps = {
     await settled(page);
     assert.equal(await page.isVisible("#add"), false);
     // A series is hidden and shown again by its name.
-    const shown = () => page.evaluate(() => globalThis.spikewire.plots.data().slice(1).map((own) => own.some((value) => value !== null)));
+    const shown = () => page.evaluate(() => globalThis.spikewire.plots.data()[0].slice(1).map((own) => own.some((value) => value !== null)));
     await page.locator("#legend button").nth(1).click();
     assert.deepEqual(await shown(), [true, false, true, true, true]);
     await page.locator("#legend button").nth(1).click();
