@@ -78,10 +78,10 @@ export function showFile({ find }) {
   at("unit-field").hidden = !isAsked();
   if (isAsked()) render(options([["", "choose …"], ...choices(recording, recording.field).map((unit) => [unit, unit])], answer(recording, recording.field) ?? ""), at("unit"));
   at("about").textContent = at("about").title = about(state);
-  at("about").title = at("about").textContent;
   document.body.classList.toggle("dimmed", isDimmed());
   for (const id of ["picture", "settings"]) [at(id).hidden, at(id).inert] = [!recording, isDimmed()];
   at("axes").inert = isDimmed();
   for (const id of ["flight-file", "more-formats"]) at(id).disabled = !recording || isDimmed();
-  render([...(opened?.notes ?? []), ...(recording && opened === recording.opened ? recording.notes : [])].map((note) => html`<li>${note}</li>`), at("file-notes"));
+  const notes = new Set([...(opened?.notes ?? []), ...(recording && opened === recording.opened ? recording.notes : [])]);
+  render([...notes].map((note) => html`<li>${note}</li>`), at("file-notes"));
 }

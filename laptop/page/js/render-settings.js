@@ -18,6 +18,9 @@ const CARDS = [
   ["sod", "control loop"], ["sf", "slow signal"], ["asf", "jumps"], ["if", "an angle"], ["position", "a network"], ["tbr", "as a camera"],
 ];
 
+/** Letters of a title that fit on a card. */
+const LONGEST = 8;
+
 export const letter = (place) => String.fromCharCode(65 + place);
 
 /** What the views do when a user acts: `choose(place)`, `give(name, text)`, `hide(colour)`, `take(scheme)`. */
@@ -37,7 +40,8 @@ function tab(setting, place) {
 
 function card([name, need]) {
   const scheme = state.schemes.find((own) => own.name === name), isChosen = current().scheme === name;
-  return html`<button type="button" class="card" data-scheme=${name} aria-pressed=${isChosen} title="${scheme.words}: ${scheme.goodFor}" @click=${() => acts.take(name)}><b>${scheme.title}</b><span>${need}</span></button>`;
+  const title = scheme.title.length > LONGEST ? name.toUpperCase() : scheme.title;
+  return html`<button type="button" class="card" data-scheme=${name} aria-pressed=${isChosen} title="${scheme.words}: ${scheme.goodFor}" @click=${() => acts.take(name)}><b>${title}</b><span>${need}</span></button>`;
 }
 
 let shown = {}, showParameters = () => {};

@@ -9,8 +9,10 @@ import { amplitudes } from "../js/spectrum.js";
 /** Windows that show all of it without scrolling, and smaller ones. */
 const WHOLE = { wide: { width: 1440, height: 900 }, low: { width: 1280, height: 720 }, huge: { width: 1920, height: 1080 } };
 const SIZES = {
-  ...Object.fromEntries(Object.entries(WHOLE).map(([name, viewport]) => [name, { viewport }])),
+  wide: { viewport: WHOLE.wide },
+  low: { viewport: WHOLE.low },
   small: { viewport: { width: 1024, height: 768 } },
+  tablet: { viewport: { width: 820, height: 1180 } },
   phone: { viewport: { width: 390, height: 800 }, hasTouch: true, isMobile: true },
 };
 

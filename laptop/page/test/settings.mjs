@@ -243,7 +243,8 @@ async function pictured(page) {
     await page.click("#remove");
     await settled(page);
   }
-  await page.setViewportSize({ width: 1280, height: 900 });
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await page.evaluate(() => { for (const own of document.querySelectorAll("details")) own.open = false; });
   await page.click("#tab-0");
   await page.fill("#parameter-threshold", "0.35");
   await settled(page);

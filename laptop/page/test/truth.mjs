@@ -70,7 +70,7 @@ export const steps = {
     await settled(page);
     assert.equal(await page.textContent("#file-error"), "");
     assert.match(await page.textContent("#about"), /^ts\.csv: x, 400 samples in 1\.596 s, 250 a second/);
-    const above = "first,second\nmore,words\nx,y\n1,2\n3,4\n5,1\n";
+    const above = "a,b\n9,9\nx,y\n1,2\n3,4\n5,1\n";
     await drop(page, { name: "above.csv", bytes: Buffer.from(above) });
     assert.notEqual(await page.textContent("#file-error"), "");
     await enter(page, "#header", 3);
