@@ -12,6 +12,7 @@ export function openDrawer(id) {
 }
 
 export function showDrawer() {
+  at("drawer").hidden = !state.drawer;
   for (const [id, button] of Object.entries(PARTS)) {
     at(id).hidden = state.drawer !== id;
     at(button).setAttribute("aria-expanded", state.drawer === id);
