@@ -110,7 +110,7 @@ export const steps = {
       answers.add(ours);
       // The filter that is set is the one that the search had.
       if (/^.*take \w/m.test(ours)) {
-        const isFiltered = /behind a low-pass/.test(ours);
+        const isFiltered = /of the filtered signal/.test(ours);
         assert.equal(await page.inputValue("#filter"), isFiltered ? "low-pass" : "none", ours);
       }
     }
