@@ -7,7 +7,7 @@
 mod common;
 
 use common::{file, good, ran, refused};
-use lab::network::{Asked, Current, File, Fires, Framework, Model, Reset, Trains};
+use lab::network::{Asked, Current, File, Fires, Framework, Model, Outputs, Reset, Trains};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -141,6 +141,26 @@ fn networks_fire_as_their_frameworks_do() {
         let steps: Vec<Vec<&str>> = steps.lines().map(|line| line.split(';').collect()).collect();
         let column = |at: usize| -> Trains { steps.iter().map(|step| spikes(step[at])).collect() };
         let (fired, potentials) = model(&format!("{name}.nir"), &asked).run_as_flown(&column(0));
+        // The outputs that the framework recorded show the rule, whether its name is given or not.
+        let outputs = if name.starts_with("norse") {
+            let recorded = steps.iter().map(|step| step[3].split(' '));
+            Outputs::Potentials(
+                recorded.map(|step| step.map(|v| v.parse().unwrap()).collect()).collect(),
+            )
+        } else {
+            Outputs::Spikes(column(2))
+        };
+        for framework in [asked.framework, None] {
+            let file = File::read(&nir(&format!("{name}.nir"))).unwrap();
+            let open = Asked { framework, dt: asked.dt, ..Asked::default() };
+            let found = file.find_rule(&open, &column(0), &outputs);
+            let found = found.unwrap_or_else(|error| panic!("{name} {reset}: {error}")).unwrap();
+            let by_found = file.on_controller(&found.asked).unwrap().run_as_flown(&column(0));
+            assert_eq!(by_found.0, fired, "{name} {reset}: {found:?}");
+            if name.starts_with("norse") {
+                assert_eq!(by_found.1, potentials, "{name} {reset}: {found:?}");
+            }
+        }
         assert!(steps.len() == 200 && column(1).iter().flatten().count() > 100, "{name}");
         assert_eq!(differing(&fired[0], &column(1)), 0, "{name} {reset}");
         assert_eq!(differing(&fired[1], &column(2)), 0, "{name} {reset}");
