@@ -110,6 +110,7 @@ fn networks_fire_as_their_frameworks_do() {
     let norse = Asked { dt: Some(1e-3), current: Some(Current::Whole), ..by(Framework::Norse) };
     let subtracting = |asked: &Asked| Asked { resets: vec![Subtract], ..asked.clone() };
     let jelly = by(Framework::SpikingJelly);
+    let mut ambiguous = Vec::new();
     for (name, reset, asked) in [
         ("snntorch", "subtract-late", torch(SubtractLate)),
         ("snntorch", "to-value-late", torch(ToValueLate)),
@@ -153,8 +154,20 @@ fn networks_fire_as_their_frameworks_do() {
         for framework in [asked.framework, None] {
             let file = File::read(&nir(&format!("{name}.nir"))).unwrap();
             let open = Asked { framework, dt: asked.dt, ..Asked::default() };
-            let found = file.find_rule(&open, &column(0), &outputs);
-            let found = found.unwrap_or_else(|error| panic!("{name} {reset}: {error}")).unwrap();
+            let found = match file.find_rule(&open, &column(0), &outputs) {
+                Ok(found) => found.unwrap(),
+                // Two outputs that fire seldom cannot tell all rules apart: then the error names those that fit.
+                Err(error) => {
+                    let words = error.to_string();
+                    assert!(words.contains("rules give"), "{name} {reset}: {words}");
+                    assert!(
+                        words.contains(&format!("`reset` {reset} ")),
+                        "{name} {reset}: {words}"
+                    );
+                    ambiguous.push(format!("{name} {reset} {framework:?}"));
+                    continue;
+                }
+            };
             let by_found = file.on_controller(&found.asked).unwrap().run_as_flown(&column(0));
             assert_eq!(by_found.0, fired, "{name} {reset}: {found:?}");
             if name.starts_with("norse") {
@@ -172,6 +185,8 @@ fn networks_fire_as_their_frameworks_do() {
             assert!(off < 2e-5, "{name} {reset}: {off}");
         }
     }
+    // 43 of the 50 recordings leave one rule.
+    assert_eq!(ambiguous.len(), 7, "{ambiguous:?}");
 }
 
 /// Neurons that rest at 0.1 with a threshold of 0.4 become neurons that rest at 0 with a threshold of 0.3. A spike

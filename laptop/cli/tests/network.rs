@@ -339,22 +339,24 @@ fn potentials_are_compared_with_those_of_training() {
     }
     // Norse's potentials tell a wrong `--dt`.
     let at = |name: &str| peers("nir").join(name).display().to_string();
-    for (reset, dt, least, most) in [
-        ("to-value", "1e-3", 0.0, 0.0),
-        ("subtract", "1e-3", 0.0, 0.0),
-        ("to-value", "5e-4", 10.0, 100.0),
-        ("subtract", "1.2e-3", 2.0, 20.0),
-    ] {
+    for (reset, dt) in
+        [("to-value", "1e-3"), ("subtract", "1e-3"), ("to-value", "5e-4"), ("subtract", "1.2e-3")]
+    {
         let recorded = fs::read_to_string(at(&format!("norse.{reset}.txt"))).unwrap();
         let column = |number: usize| column(&recorded, number);
         let (_inputs, inputs) = file("inputs.txt", column(0));
         let (_outputs, outputs) = file("outputs.txt", column(3));
         let norse = format!("network {} {inputs} --on reckon --as norse", at("norse.nir"));
         let norse = format!("{norse} --reset {reset} --dt {dt} --trained-potentials {outputs}");
-        let report = good(&norse, "").stderr;
-        let off = figures(&report, "in double precision, as the file")[0];
-        assert!((least..=most).contains(&off), "{report}");
-        assert_eq!(report.contains("may be others"), off > 0.0, "{report}");
+        if dt == "1e-3" {
+            let report = good(&norse, "").stderr;
+            let off = figures(&report, "in double precision, as the file")[0];
+            assert_eq!(off, 0.0, "{report}");
+        } else {
+            // Norse's own step, which is not in the file, is among those that are tried.
+            let other = format!("gives all of them by --as norse --reset {reset}");
+            refused(&norse, "", &[&other, "--dt 0.001"]);
+        }
     }
     for (network, option, outputs, words) in [
         (&network, "potentials", "2 0\n", "outputs of 1 steps, and the recording has 3"),

@@ -202,7 +202,7 @@ pub fn bring(request: &Request) -> Result<Brought> {
     let Request { chip, trained, tuned, held_out, framework: own, compare, progress } = *request;
     let mut original = Original::of(trained, tuned);
     if let Some(own) = own {
-        own.check(&original.outputs(), held_out.map_or(tuned, |all| all.steps).len())?;
+        own.check(&trained.outputs(), held_out.map_or(tuned, |all| all.steps).len())?;
     }
     let mut other = held_out.map(|held_out| Original::of(trained, held_out.steps));
     let from = held_out.map_or(0, |held_out| held_out.from);
@@ -295,16 +295,6 @@ impl Original {
             readout: self.readout.clone(),
             fired: self.fired.iter().map(|all| all[from..].to_vec()).collect(),
             potentials: self.potentials.iter().skip(from).cloned().collect(),
-        }
-    }
-
-    /// Returns the layer whose spikes or potentials are the outputs.
-    pub(super) fn outputs(&self) -> OutputLayer {
-        match (&self.readout, self.layers.last()) {
-            (Some((_, outputs)), _) => OutputLayer { outputs: *outputs, fires: false },
-            (None, last) => {
-                OutputLayer { outputs: last.map_or(0, |(_, neurons)| *neurons), fires: true }
-            }
         }
     }
 

@@ -77,8 +77,13 @@ impl File {
         inputs: &Trains,
         outputs: &Outputs,
     ) -> Result<Option<Found>> {
+        let layer = match self {
+            Self::Plain(trained) => trained.outputs(),
+            Self::Nir(chain) => chain.outputs(),
+            Self::Toml(model) => model.outputs(),
+        };
+        outputs.check(&layer, inputs.len())?;
         let Self::Nir(chain) = self else { return Ok(None) };
-        outputs.check(&chain.outputs(), inputs.len())?;
         for step in inputs {
             let is_known = step.iter().all(|input| usize::from(*input) < chain.inputs());
             fault::ensure!(

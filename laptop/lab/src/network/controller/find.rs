@@ -92,12 +92,15 @@ pub(in super::super) fn find(
     if let Some((found, _)) = fitting.pop() {
         return Ok(found);
     }
-    // A part that the user gave may be wrong.
-    let free = Asked { dt: asked.dt, ..Asked::default() };
-    if *asked != free
-        && let Ok(Found { asked: fits, .. }) = find(chain, &free, inputs, outputs)
-    {
-        return Err(NetworkKind::OtherRule { fits: Box::new(fits) }.into());
+    // A part that the user gave may be wrong: any but the step, any but the framework, or several.
+    let only_step = Asked { dt: asked.dt, ..Asked::default() };
+    let only_framework = Asked { framework: asked.framework, ..Asked::default() };
+    for free in [only_step, only_framework, Asked::default()] {
+        if *asked != free
+            && let Ok(Found { asked: fits, .. }) = find(chain, &free, inputs, outputs)
+        {
+            return Err(NetworkKind::OtherRule { fits: Box::new(fits) }.into());
+        }
     }
     match (nearest, refused) {
         (Some(Tried { asked, steps }), _) => {

@@ -18,7 +18,7 @@ pub(super) use open::words;
 pub use rule::{Asked, Current, Decay, Fires, Framework, Reset, Rule};
 
 use super::Trains;
-use super::bring::{Brought, HeldOut, Original, Outputs, Reading, figures};
+use super::bring::{Brought, HeldOut, Original, OutputLayer, Outputs, Reading, figures};
 use super::chip::{OnChip, Ran, Remarks, Stepped};
 use super::costs::Cost;
 use crate::network::fault::{FitKind, Result};
@@ -121,6 +121,12 @@ impl Model {
         Original { layers, readout, fired, potentials }
     }
 
+    /// Returns the layer whose spikes or potentials are the outputs.
+    pub(super) fn outputs(&self) -> OutputLayer {
+        let outputs = self.net.layers.last().map_or(0, |layer| layer.neurons.len());
+        OutputLayer { outputs, fires: !self.is_silent() }
+    }
+
     /// Returns whether the network's outputs are potentials of neurons that never fire.
     fn is_silent(&self) -> bool {
         let last = self.net.layers.last().and_then(|layer| layer.neurons.first());
@@ -197,7 +203,7 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
     let mut original = model.original(tuned);
     let mut reading = Reading::default();
     if let Some(framework) = framework {
-        framework.check(&original.outputs(), tuned.len())?;
+        framework.check(&model.outputs(), tuned.len())?;
         reading = Reading::of(&original, framework, 0);
         original.replace_outputs(framework);
     }
