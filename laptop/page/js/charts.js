@@ -9,6 +9,8 @@ const NUMBERS = 56, LABEL = 16;
 export const AXIS = NUMBERS + LABEL, TIMES = 36, RIGHT = 12;
 /** Heights: the signal has what the others leave, of which errors and spikes give some if it is little. */
 const ERRORS = 74, SPIKES = 54, NEURONS = 100, LEAST_SIGNAL = 0.45;
+/** Lower strips have no room for numbers. */
+const LOW = 40;
 const FONT = "12px system-ui, sans-serif";
 const line = uPlot.paths.linear();
 
@@ -32,6 +34,9 @@ function around(low, high) {
   const far = 1.1 * Math.max(Math.abs(low ?? 0), Math.abs(high ?? 0)) || 1;
   return [-far, far];
 }
+
+/** The numbers of an axis, or none on a low strip. */
+const numbers = (height) => (height < LOW ? { values: (_, all) => all.map(() => "") } : {});
 
 const axis = (label, more) => ({
   stroke: css("--ink"), grid: { stroke: css("--grid"), width: 1 }, ticks: { stroke: css("--grid") }, font: FONT, labelFont: FONT, label, labelSize: LABEL, ...more,
@@ -62,7 +67,7 @@ export function charts(plots) {
   }, signal, host);
   const strip = new uPlot({
     ...common, height: tall.errors, scales: { x, y: { range: (_, low, high) => around(low, high) } },
-    axes: [hidden, axis("error", { size: NUMBERS, space: 20 })],
+    axes: [hidden, axis(tall.errors < LOW ? "" : "error", { size: NUMBERS, space: 20, ...numbers(tall.errors) })],
     series: [{}, ...runs.map(({ colour }) => stroke(colour))],
     hooks: hooks(columns),
   }, errors, host);
@@ -73,7 +78,7 @@ export function charts(plots) {
     return new uPlot({
       ...common, height: tall.spikes[place] + (isLast ? TIMES : 0), scales: { x, y: { range: () => rows } },
       axes: [isLast ? axis(`time, ${times.unit}`, { size: 20, gap: 1, ticks: { stroke: css("--grid"), size: 4 } }) : hidden,
-        axis(label, { size: NUMBERS, grid: { show: false }, splits: isPopulation ? undefined : () => (own.isSigned ? [-1, 0, 1] : [0, 1]) })],
+        axis(label, { size: NUMBERS, ...numbers(tall.spikes[place]), grid: { show: false }, splits: isPopulation ? undefined : () => (own.isSigned ? [-1, 0, 1] : [0, 1]) })],
       series: [{}, { paths: () => null, points: { show: false } }],
       hooks: hooks((plot) => paintSpikes(plot, plots.runs[place], plots)),
     }, [plots.view, [0, 0]], host);
