@@ -964,7 +964,12 @@ fn check_noticed(faults: &[Fault], tally: &Tally) {
     match faults {
         [Lost] => assert_eq!(noticed("frames lost"), tally.injected),
         [Doubled] => assert_eq!(noticed("repeated"), tally.injected),
-        [Late] => assert_eq!(noticed("late"), noticed("frames lost"), "{:?}", tally.noticed),
+        // A short frame that is late by more than an eighth of its counts is not known as one.
+        [Late] => {
+            let (late, lost) = (noticed("late"), noticed("frames lost"));
+            assert!(late <= lost && late > lost - lost / 10, "{:?}", tally.noticed);
+            assert!(late == lost || noticed("bad checksums") > 0);
+        }
         [FarLate] => assert!(noticed("late") > 0),
         [SenderOut | SessionAgain | ReceiverOut | TickWrap | NumberWrap] => {
             assert!(noticed("starts") > 0);
