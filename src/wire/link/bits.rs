@@ -207,6 +207,14 @@ pub(super) struct Glance {
     count: u32,
 }
 
+impl Glance {
+    /// Whether fewer than 8 bits are left, all of them 0.
+    #[inline]
+    pub(super) fn is_padding(self) -> bool {
+        self.count < 8 && self.bits == 0
+    }
+}
+
 impl TakeBits for Glance {
     #[inline]
     fn take(&mut self, count: u32) -> Option<u32> {
@@ -268,9 +276,9 @@ impl<'a> BitReader<'a> {
         self.end.saturating_sub(self.taken)
     }
 
-    /// Whether fewer than 8 bits are left, all of them 0.
+    /// Whether no [bits but padding](Glance::is_padding) are left.
     pub(super) fn is_padding(self) -> bool {
-        self.left() < 8 && self.glance().bits == 0
+        self.glance().is_padding()
     }
 }
 

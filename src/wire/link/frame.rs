@@ -488,6 +488,9 @@ impl Events<'_> {
     #[inline(always)]
     pub(super) fn next_numbered(&mut self) -> Option<Numbered> {
         let mut glance = self.bits.glance();
+        if glance.is_padding() {
+            return None;
+        }
         if let Some(next) = self.place.take(&mut glance)
             && self.bits.pass(glance).is_some()
         {
