@@ -995,7 +995,7 @@ fn whatever_goes_wrong_nothing_is_wrong_that_is_called_exact() {
         let tally =
             if is_float { soak::<f32>(1.0, faults, 1) } else { soak::<i16>(1000.0, faults, 1) };
         check_noticed(faults, &tally);
-        assert!(tally.injected > 0 && tally.exact > 10_000);
+        assert!(tally.injected > 0 && tally.exact > 10_000, "{faults:?}: {tally:?}");
     }
 }
 

@@ -282,12 +282,13 @@ struct Gathering {
 }
 
 impl Gathering {
-    /// Whether this item, the next one, waits for others.
+    /// Whether this item, the next one, waits for others. Not if it is far ahead of the time that is known, as after a clock
+    /// that stepped back, or where nobody tells the time.
     #[inline]
     fn delays(self, first: Taken) -> bool {
         let Item::Event(event) = first.item else { return false };
-        let waited = i64::from(self.now.since(event.tick));
-        self.micros > 0 && first.lost == 0 && waited < i64::from(self.micros)
+        let waited = self.now.since(event.tick).unsigned_abs();
+        first.lost == 0 && waited < self.micros
     }
 }
 

@@ -133,7 +133,7 @@ impl FromStr for Format {
                 let channels = settings.number("channels", 8)?;
                 let period = settings.number("period", 1_000)?;
                 let jitter: u8 = settings.number("jitter", 0)?;
-                if period == 0 || jitter > 15 {
+                if !(1..1 << 24).contains(&period) || jitter > 15 {
                     return Err(EventsKind::PeriodOrJitter { text: text.to_owned() }.into());
                 }
                 Self::Link(Coding::for_channels(channels, period).with_jitter_bits(jitter))
