@@ -990,13 +990,17 @@ fn check_noticed(faults: &[Fault], tally: &Tally) {
 
 #[test]
 fn whatever_goes_wrong_nothing_is_wrong_that_is_called_exact() {
+    let mut silent = Vec::new();
     for (number, (faults, ..)) in rows().iter().enumerate() {
         let is_float = number.is_multiple_of(2) || faults[..] == [NotFinite];
         let tally =
             if is_float { soak::<f32>(1.0, faults, 1) } else { soak::<i16>(1000.0, faults, 1) };
         check_noticed(faults, &tally);
-        assert!(tally.injected > 0 && tally.exact > 10_000, "{faults:?}: {tally:?}");
+        if tally.injected == 0 || tally.exact <= 10_000 {
+            silent.push((faults.clone(), tally.injected, tally.exact));
+        }
     }
+    assert!(silent.is_empty(), "without a fault or with few exact values: {silent:?}");
 }
 
 /// Prints the table of SAFETY.md, from flights of hours; see `cargo xtask write faults`.
