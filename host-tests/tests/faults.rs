@@ -996,7 +996,9 @@ fn whatever_goes_wrong_nothing_is_wrong_that_is_called_exact() {
         let tally =
             if is_float { soak::<f32>(1.0, faults, 1) } else { soak::<i16>(1000.0, faults, 1) };
         check_noticed(faults, &tally);
-        if tally.injected == 0 || tally.exact <= 10_000 {
+        // Of two senders on one line only full frames are read.
+        let least = if faults[..] == [Spliced] { 5_000 } else { 10_000 };
+        if tally.injected == 0 || tally.exact <= least {
             silent.push((faults.clone(), tally.injected, tally.exact));
         }
     }

@@ -6,6 +6,7 @@ static BYTES: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 static NIBBLES: [u32; 16] = nibbles();
 
 /// The register after each nibble, from 0 on.
+#[expect(clippy::indexing_slicing, reason = "below 16 and 256")]
 const fn nibbles() -> [u32; 16] {
     let [bytes] = BYTES.table();
     let mut nibbles = [0; 16];

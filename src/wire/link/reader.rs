@@ -381,8 +381,8 @@ impl<const N: usize> Reader<N> {
 
     #[inline]
     fn standing(&self, head: &Head) -> Standing {
-        let checksum = head.checksum;
         const BEFORE: i64 = -LATE;
+        let checksum = head.checksum;
         let [present, earlier @ ..] = &self.sessions;
         let ahead = present.ahead(head);
         let since = head.time.since(self.time);
