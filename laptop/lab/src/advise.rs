@@ -47,16 +47,6 @@ const FEWEST: f64 = 4.0;
 /// Warning of a search that ended early.
 const CUT_SHORT: &str = "the search was cut short: what is advised depends on this machine's speed, and on when it was stopped";
 
-/// Returns the parameters that every advice on a scheme has: a code with a baseline starts from 0, so that baselines are
-/// multiples of the threshold and do not depend on the first sample, which the rotors may shake.
-fn anchored(scheme: Scheme) -> Asked {
-    let mut asked = Asked::default();
-    if scheme.info().has_baseline() {
-        asked.set("start", 0.0);
-    }
-    asked
-}
-
 /// Returns the largest latency, in samples, that a control loop tolerates. `bandwidth` is the loop's bandwidth in Hz,
 /// and `rate` is the number of samples a second.
 fn borne(bandwidth: f64, rate: f64) -> f64 {
@@ -432,7 +422,7 @@ impl Advice {
             self.others.extend(self.unflown.last().cloned());
             return Ok(());
         }
-        match self.tuned(request, scheme, recording, &anchored(scheme), budget)? {
+        match self.tuned(request, scheme, recording, &self.anchored(scheme), budget)? {
             Tuning::Reached(candidate) => {
                 self.is_cut_short |= candidate.row.is_cut_short;
                 self.reaching.push(*candidate);
@@ -509,7 +499,18 @@ impl Advice {
     /// control loop, if the channel's unit is unknown, or if the scheme did not fly.
     fn flown_parameters(&self, scheme: Scheme) -> Option<Asked> {
         self.loop_latency?;
-        Some(anchored(scheme).or(&flown::parameters(scheme, self.inertial.as_ref()?)?))
+        Some(self.anchored(scheme).or(&flown::parameters(scheme, self.inertial.as_ref()?)?))
+    }
+
+    /// Returns the parameters that every advice on a scheme has for this channel. On an axis of an inertial sensor a code with
+    /// a baseline starts from 0, so that baselines are multiples of the threshold and do not depend on the first sample,
+    /// which the rotors may shake. Other signals, such as a pressure, may lie too far from 0.
+    fn anchored(&self, scheme: Scheme) -> Asked {
+        let mut asked = Asked::default();
+        if scheme.info().has_baseline() && self.inertial.is_some() {
+            asked.set("start", 0.0);
+        }
+        asked
     }
 
     /// Searches for settings of a scheme within `budget`. The parameters in `fixed` keep their values.

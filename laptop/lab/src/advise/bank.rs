@@ -2,7 +2,7 @@
 
 use super::bytes::{Rival, Traffic, rivals, sent};
 use super::flown::{Error, Flown, flown};
-use super::{Advice, AdviseRequest, CUT_SHORT, Errors, Tuning, anchored};
+use super::{Advice, AdviseRequest, CUT_SHORT, Errors, Tuning};
 use crate::Result;
 use crate::brief::{brief, short};
 use crate::flight::{CLOCK_PPM, Channel, Filter, Flight, Parts, period};
@@ -312,12 +312,8 @@ fn bank(
     let in_loop = request.loop_bandwidth.is_some();
     let flown = flown(scheme.name()).filter(|_| in_loop);
     let heals = scheme.info().has_baseline();
-    let apart = if heals {
-        HEALING_KEYFRAMES
-    } else {
-        flown.and_then(Flown::keyframes).unwrap_or(KEYFRAMES)
-    };
-    let (shared, start) = (shared(scheme, &rows, heard.len()), anchored(scheme));
+    let apart = apart(scheme, flown);
+    let mut shared = shared(scheme, &rows, heard.len());
     let mut is_cut_short = false;
     let (mut parts, mut held_out) = (Vec::new(), Vec::new());
     for (advice, recording) in heard {
@@ -342,7 +338,7 @@ fn bank(
                 is_stopped: watch.is_stopped,
                 tick: &|_, _| (),
             };
-            let fixed = shared.or(&start);
+            let fixed = shared.or(&advice.anchored(scheme));
             match advice.tuned(request, scheme, recording, &fixed, &budget)? {
                 Tuning::Reached(own) => {
                     is_cut_short |= own.row.is_cut_short;
@@ -356,9 +352,7 @@ fn bank(
                 }
             }
         }
-        for (name, _) in shared.iter().chain(start.iter()) {
-            asked.unset(name);
-        }
+        shared.iter().for_each(|(name, _)| asked.unset(name));
         parts.push(Channel {
             name: recording.name.clone(),
             source: recording.source.clone(),
@@ -367,6 +361,7 @@ fn bank(
             asked,
         });
     }
+    share_start(&mut parts, &mut shared);
     let flight = Flight::new(Parts {
         scheme: scheme.info(),
         sample: request.sample,
@@ -377,7 +372,7 @@ fn bank(
         gathering: 0,
         full_every: Parts::FULL_EVERY,
         filter: heard[0].0.filter(scheme, request.sample).map(|own| own.filter),
-        shared: shared.or(&start),
+        shared,
         channels: parts,
     });
     let flight = match flight {
@@ -409,6 +404,27 @@ fn bank(
         channels,
         flight,
     })))
+}
+
+/// Returns the time between keyframes, in seconds. `flown` has the flights of the scheme in a control loop.
+fn apart(scheme: Scheme, flown: Option<&Flown>) -> f64 {
+    if scheme.info().has_baseline() {
+        return HEALING_KEYFRAMES;
+    }
+    flown.and_then(Flown::keyframes).unwrap_or(KEYFRAMES)
+}
+
+/// Moves the value from which all channels start to the shared parameters, if it is the same for all.
+fn share_start(channels: &mut [Channel], shared: &mut Asked) {
+    let Some(start) = channels.first().and_then(|own| own.asked.get("start")).cloned() else {
+        return;
+    };
+    if channels.iter().all(|own| own.asked.get("start") == Some(&start)) {
+        shared.set("start", start);
+        for channel in channels {
+            channel.asked.unset("start");
+        }
+    }
 }
 
 /// A bank's channels as they are coded: a trial of each, its words, and the names of those that are coarser than what flew.
