@@ -404,13 +404,13 @@ fn a_slow_log_is_described() {
         |sample: u32| format!("{},{}\n", f64::from(sample) * 20.0, (f64::from(sample) / 6.0).sin());
     let log = "time,x\n".to_owned() + &(0..600).map(row).collect::<String>();
     let (directory, log) = file("log.csv", log);
-    let page = ran!("advise {log} --evaluations 20").output;
+    let page = ran!("advise {log} --time-unit s --evaluations 20").output;
     for words in ["600 samples in 11980 s, 0.05 a second", "take ", "- bytes a second on the link"]
     {
         assert!(page.contains(words), "{words}: {page}");
     }
     let path = directory.path().join("flight.toml");
-    let asked = format!("advise {log} --evaluations 20 -o {}", path.display());
+    let asked = format!("advise {log} --time-unit s --evaluations 20 -o {}", path.display());
     refused(&asked, "", &["no flight is written: ", "0.05 has no period of 1 µs to 16 777 215 µs"]);
     assert!(!path.exists());
 }

@@ -191,7 +191,9 @@ macro_rules! heard_by_the_laptop {
                 let (_directory, path) = file("captured.bytes", &bytes);
                 let toml = format!("../flight/tests/flights/{}.toml", stringify!($name));
                 let heard = ran!("listen {path} --flight {toml}");
-                assert!(!heard.output.contains(",estimate"), "{}", heard.stderr);
+                // A code that starts from a value may have events before its first keyframe.
+                let first = heard.output.find(",keyframe").unwrap();
+                assert!(!heard.output[first..].contains(",estimate"), "{}", heard.stderr);
                 let rows: Vec<Vec<&str>> = heard.output.lines().skip(1).map(|line| line.split(',').collect()).collect();
                 for channel in 0..flight::CHANNELS {
                     let row = rows.iter().rev().find(|row| row[1] == channel.to_string()).unwrap();
