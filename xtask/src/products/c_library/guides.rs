@@ -6,7 +6,7 @@ use super::{
     flights::{self, Emitted},
     package, put, room, work,
 };
-use crate::common::{paths, shell, usage};
+use crate::common::{shell, usage};
 use crate::programs::boards::Board;
 use crate::setup;
 use anyhow::{Context, Result, ensure};
