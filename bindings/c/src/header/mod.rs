@@ -12,7 +12,7 @@ use crate::link::CReader;
 use crate::{Flight, Kept, Queue, Status};
 
 /// Bytes of a reader's storage on any machine.
-const READER: usize = 448;
+const READER: usize = 512;
 const _: () = assert!(size_of::<Kept<CReader>>() <= READER);
 const _: () = assert!(size_of::<Kept<Queue>>() == 6 * size_of::<usize>());
 
