@@ -2,6 +2,7 @@
 
 use crate::{Flight, FlightError, FlightErrorKind, Parts, UnitSize, escaped};
 use catalogue::run::{Constant, Rust};
+use spikewire::link::Coding;
 use std::fmt::{Debug, Write};
 
 /// Returns the source code of a module `flight`, for `include!`. It needs the crate `spikewire` with the feature
@@ -29,24 +30,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     let names = listed(flight.channels.iter().map(|channel| &channel.name));
     let units = listed(flight.channels.iter().map(|channel| &channel.unit));
     let counts = listed(flight.channels.iter().map(|channel| channel.counts));
-    let slots = match flight.slot_ticks() {
-        0 => String::new(),
-        ticks => format!(".with_slot_ticks({ticks})"),
-    };
-    let mut bits = String::new();
-    if coding.jitter_bits > 0 {
-        let _ = write!(bits, ".with_jitter_bits({})", coding.jitter_bits);
-    }
-    if coding.step_bits > 0 {
-        let _ = write!(bits, ".with_step_bits({})", coding.step_bits);
-    }
-    let mut sending = String::new();
-    if flight.gathering > 0 {
-        let _ = write!(sending, ".with_gathering({})", flight.gathering);
-    }
-    if flight.full_every != Parts::FULL_EVERY {
-        let _ = write!(sending, ".with_full_every({})", flight.full_every);
-    }
+    let (slots, bits, sending) = (slots(flight), bits(coding), sending(flight));
     let mut items = String::new();
     let mut item = |words: &str, code: String| {
         // Writing to a string cannot fail.
@@ -65,14 +49,9 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         "Number of counts in one unit of each channel.",
         format!("pub const COUNTS: [f64; CHANNELS] = [{counts}];"),
     );
-    let sizes = flight.channels.iter().map(|channel| {
-        let size = UnitSize::of(&channel.unit);
-        [size.and_then(UnitSize::rate), size.and_then(UnitSize::acceleration)]
-            .map(Option::unwrap_or_default)
-    });
     item(
         "Size of each channel's unit, in rad/s and in m/s²; 0 where the unit is none of that quantity.",
-        format!("pub const SI: [[f64; 2]; CHANNELS] = [{}];", listed(sizes)),
+        format!("pub const SI: [[f64; 2]; CHANNELS] = [{}];", listed(sizes(flight).into_iter())),
     );
     item("Type of every channel's scheme.", format!("pub type Code = {code};"));
     let rounded = flight.rounded();
@@ -140,6 +119,51 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         ),
     );
     Ok(module(&items))
+}
+
+/// Returns the call that sets the length of a sub-timestep, if the scheme has sub-timesteps.
+fn slots(flight: &Flight) -> String {
+    match flight.slot_ticks() {
+        0 => String::new(),
+        ticks => format!(".with_slot_ticks({ticks})"),
+    }
+}
+
+/// Returns the calls that set the frame format's bits for jitter and step numbers, where there are some.
+fn bits(coding: Coding) -> String {
+    let mut calls = String::new();
+    // Writing to a string cannot fail.
+    if coding.jitter_bits > 0 {
+        let _ = write!(calls, ".with_jitter_bits({})", coding.jitter_bits);
+    }
+    if coding.step_bits > 0 {
+        let _ = write!(calls, ".with_step_bits({})", coding.step_bits);
+    }
+    calls
+}
+
+/// Returns the calls that set when a transmitter sends, where that is not the usual time.
+fn sending(flight: &Flight) -> String {
+    let mut calls = String::new();
+    // Writing to a string cannot fail.
+    if flight.gathering > 0 {
+        let _ = write!(calls, ".with_gathering({})", flight.gathering);
+    }
+    if flight.full_every != Parts::FULL_EVERY {
+        let _ = write!(calls, ".with_full_every({})", flight.full_every);
+    }
+    calls
+}
+
+/// Returns the size of each channel's unit in rad/s and in m/s²; 0 where the unit is none of that quantity.
+fn sizes(flight: &Flight) -> Vec<[f64; 2]> {
+    let mut sizes = Vec::new();
+    for channel in &flight.channels {
+        let size = UnitSize::of(&channel.unit);
+        let rate = size.and_then(UnitSize::rate).unwrap_or_default();
+        sizes.push([rate, size.and_then(UnitSize::acceleration).unwrap_or_default()]);
+    }
+    sizes
 }
 
 /// Returns the bank without sub-timesteps, in Rust. `schemes` has a reference to the scheme of each channel.
