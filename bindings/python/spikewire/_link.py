@@ -47,11 +47,12 @@ class Sender:
         filter: Filter | Sequence[Filter | None] | None = None,
         label: str | None = None,
         channels: Whole | None = None,
+        step_bits: Whole = 0,
     ):
-        self._made_of = schemes, period, keyframe_every, session, filter, label, channels
+        self._made_of = schemes, period, keyframe_every, session, filter, label, channels, step_bits
         coders = _coders(schemes, channels)
         filters = _filters(filter, len(coders))
-        self._native = _native.Sender(coders, filters, period, keyframe_every, session, label)
+        self._native = _native.Sender(coders, filters, period, keyframe_every, session, label, step_bits)
         self._sample = schemes[0].sample if isinstance(schemes, Sequence) else schemes.sample
         # Behind a filter, a sample may be in the range again.
         ranges = [] if any(filters) else [coder.ranges() for coder in coders]

@@ -278,9 +278,6 @@ fn ends(coders: &[Coder], link: &Link, clock_tolerance: u32) -> Result<Ends> {
     }
     let mut settings = Vec::new();
     for (stream, coder) in (0..).zip(coders) {
-        if coder.asked.get("start").is_some() {
-            bail!("a bank starts from its first samples, not from start=");
-        }
         let past = vec![0.0; coder.looks_back()];
         settings.push(coder.settle(&past, None)?.with_stream(stream));
     }
@@ -317,11 +314,14 @@ impl Sender {
         keyframe_every: u64,
         session: u32,
         label: Option<String>,
+        step_bits: u8,
     ) -> PyResult<Self> {
         let link = Link { filters, period, label };
         let Ends { near, coding, fingerprint, .. } = ends(&coders, &link, 0).map_err(value)?;
         let session = Session::counted(session);
-        let transmitter = Transmitter::new(coding, session).with_fingerprint(fingerprint);
+        let transmitter = Transmitter::new(coding, session)
+            .with_fingerprint(fingerprint)
+            .with_step_bits(step_bits);
         Ok(Self(Mutex::new(Sending {
             near,
             channels: coders.len(),
