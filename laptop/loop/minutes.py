@@ -118,6 +118,7 @@ SHOWN = [
     "dead band x 2 behind 200 Hz",
     "sod/numbered-cascade",
     "sod/numbered-fine",
+    "sod/numbered-blind",
     "dead band behind 80 Hz",
 ]
 
@@ -188,12 +189,23 @@ def read() -> Kept:
 
 
 def keep(kept: Kept) -> None:
-    """Writes what was flown, a condition a line."""
+    """Writes what was flown. Cells in which another process has flown more stay as they are."""
+    for name, own in read().items():
+        for condition, cells in own.items():
+            mine = kept.setdefault(name, {}).setdefault(condition, {})
+            for place, cell in cells.items():
+                if place not in mine or len(mine[place].errors) < len(cell.errors):
+                    mine[place] = cell
+    KEPT.write_text(written(kept))
+
+
+def written(kept: Kept) -> str:
+    """What was flown as it is kept, a condition a line."""
     ways = []
     for name, own in kept.items():
         lines = [f'    "{condition}": {json.dumps({place: vars(cell) for place, cell in cells.items()})}' for condition, cells in own.items()]
         ways.append(f'  "{name}": {{\n' + ",\n".join(lines) + "\n  }")
-    KEPT.write_text("{\n" + ",\n".join(ways) + "\n}\n")
+    return "{\n" + ",\n".join(ways) + "\n}\n"
 
 
 def fly_all(kept: Kept, names: list[str], conditions: list[Condition]) -> None:
@@ -290,6 +302,7 @@ def label(name: str) -> str:
         "sod/numbered-unfiltered": "the same without a filter",
         "sod/numbered-cascade": "the same behind 80 Hz, for the cascade",
         "sod/numbered-fine": "the same behind 80 Hz, thresholds half as large",
+        "sod/numbered-blind": "the same behind 200 Hz, deaf to gravity",
     }.get(name, name)
 
 
@@ -366,7 +379,7 @@ def main(arguments: list[str]) -> None:
                 values = [number(margin(known[name], quantity, place), 3) for place in LINES]
                 print(row([name, quantity, *values]), end="", flush=True)
         return
-    kept = read() if "--anew" not in options else {}
+    kept = read()
     if "--check" in options:
         for name in names:
             again = Cell()
@@ -376,8 +389,10 @@ def main(arguments: list[str]) -> None:
                 raise SystemExit(f"{name} flies otherwise than {KEPT.name} has it: {again}")
         return
     if "--print" not in options:
-        for name in names:
-            kept.pop(name, None)
+        if names or "--anew" in options:
+            dropped = names or list(kept)
+            KEPT.write_text(written({name: own for name, own in kept.items() if name not in dropped}))
+            kept = read()
         fly_all(kept, names or SHOWN, CONDITIONS)
     print(tables(kept), end="")
 

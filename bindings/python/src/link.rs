@@ -191,7 +191,10 @@ impl Build<'_> {
             let Ok(built) = built.downcast::<(P, P::EncoderState)>() else {
                 bail!("the channels of a bank differ in more than numbers")
             };
-            let (scheme, state) = *built;
+            let (scheme, mut state) = *built;
+            if own.get("start").is_some() {
+                scheme.prime(&mut state, &[own.signal("start")?]);
+            }
             // A bank borrows its schemes for as long as it lives, and those of a firmware lie in flash: a few hundred
             // bytes that are not given back.
             channels.push((&*Box::leak(Box::new(scheme)), state));

@@ -79,7 +79,10 @@ fn put(markers: [&'static str; 3], printed: &str) -> Result<()> {
 }
 
 /// Splits the output into tables at empty lines, each with its place in the page.
-fn tables(markers: [&'static str; 3], printed: &str) -> impl Iterator<Item = (&'static str, String)> {
+fn tables(
+    markers: [&'static str; 3],
+    printed: &str,
+) -> impl Iterator<Item = (&'static str, String)> {
     let each = printed.split("\n\n").map(|table| format!("\n{}\n\n", table.trim_end()));
     markers.into_iter().zip(each)
 }
