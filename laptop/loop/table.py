@@ -139,7 +139,7 @@ def number(value: float | None, digits: int = 0) -> str:
 
 
 FLOWN = """\
-| code | flies? | low-pass, Hz | keyframes, ms | error, ° | spikes/s | everywhere: beside none | lost, % |
+| code | 4 s | low-pass, Hz | keyframes, ms | error, ° | spikes/s | everywhere: beside none | lost, % |
 |---|---|---:|---:|---:|---:|---:|---:|
 """
 FILTERED = """\
@@ -156,7 +156,7 @@ WHICH = {
 }
 
 THIRD = """\
-| code | flies? RotorPy | MuJoCo | error, °: RotorPy | MuJoCo | lost: RotorPy | MuJoCo | ratios of error |
+| code | 4 s: RotorPy | MuJoCo | error, °: RotorPy | MuJoCo | lost: RotorPy | MuJoCo | ratios of error |
 |---|---|---|---:|---:|---:|---:|---:|
 """
 
