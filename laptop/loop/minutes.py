@@ -255,11 +255,13 @@ def error(cell: Cell) -> float | None:
 
 
 def beside(cells: dict[str, Cell], raw: dict[str, Cell]) -> float | None:
-    """The mean ratio of the error to that of raw samples, over all flights that neither lost."""
+    """The mean over places of the ratio of the error to that of raw samples, on the flights that neither lost."""
     ratios = []
     for place, cell in cells.items():
-        pairs = zip(cell.errors, raw[place].errors if place in raw else [])
-        ratios += [own / other for own, other in pairs if own is not None and other is not None]
+        pairs = list(zip(cell.errors, raw[place].errors if place in raw else []))
+        both = [(own, other) for own, other in pairs if own is not None and other is not None]
+        if both:
+            ratios.append(sum(own for own, _ in both) / sum(other for _, other in both))
     return float(np.mean(ratios)) if ratios else None
 
 
@@ -332,20 +334,20 @@ def tables(kept: Kept) -> str:
     for name in SHOWN:
         own = kept.get(name, {})
         here, everywhere = own.get("here", {}).get(key(HERE)), own.get("everywhere", {})
-        if here and everywhere:
+        if here:
             second = [np.mean(cell.bytes) for place, cell in everywhere.items() if "drone-models" in place and place.endswith(" 500")]
-            pairs = [(cell.bytes, raw["everywhere"][place].bytes) for place, cell in everywhere.items()]
-            shares = [100 * np.mean(sizes) / np.mean(others) for sizes, others in pairs]
+            plain = raw.get("everywhere", {})
+            shares = [100 * np.mean(cell.bytes) / np.mean(plain[place].bytes) for place, cell in everywhere.items() if place in plain]
             betaflights = everywhere.get(key(BETAFLIGHT))
             rivals += row([
                 label(name),
                 number(error(here), 2) + (f", {here.lost()} lost" if here.lost() else ""),
                 number(np.mean(here.bytes)),
                 lost(everywhere),
-                number(beside(everywhere, raw["everywhere"]), 2),
+                number(beside(everywhere, plain), 2),
                 number(betaflights and np.mean(betaflights.bytes)),
                 number(max(second, default=None)),
-                f"{number(min(shares))}–{number(max(shares))}",
+                f"{number(min(shares))}–{number(max(shares))}" if shares else "–",
             ])
         cell = own.get("60 s on Betaflight's loop", {}).get(key(BETAFLIGHT))
         others = own.get("60 s elsewhere", {})

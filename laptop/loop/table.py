@@ -123,7 +123,7 @@ def verdict(own: dict, control: dict) -> str:
     if not lost and not own["here"]["lost"]:
         return "**yes**" if far(own, control) <= WITHIN else "loosely"
     if not own["here"]["lost"] and all("Betaflight" in where for where in lost):
-        return "not on Betaflight's loop"
+        return "not: Betaflight"
     return f"not in {len(lost)} of {len(cells)}" if len(lost) < len(cells) else "**no**"
 
 
@@ -156,8 +156,8 @@ WHICH = {
 }
 
 THIRD = """\
-| code | 4 s: RotorPy | MuJoCo | error, °: RotorPy | MuJoCo | lost: RotorPy | MuJoCo | ratios of error |
-|---|---|---|---:|---:|---:|---:|---:|
+| code | 4 s | error, °: RotorPy | MuJoCo | lost: RotorPy | MuJoCo | ratios of error |
+|---|---|---:|---:|---:|---:|---:|
 """
 
 
@@ -199,9 +199,9 @@ def is_held(own: dict | None) -> bool:
 
 
 def third_row(name: str, own: dict, flown: dict, thirds: dict) -> str:
-    """A row of the third table: RotorPy's flights beside MuJoCo's."""
+    """A row of the third table: the verdict with MuJoCo's flights, and RotorPy's flights beside MuJoCo's."""
     theirs = in_rotorpy(flown[name])
-    columns = [label(name), *verdicts(name, own, flown, thirds)]
+    columns = [label(name), verdicts(name, own, flown, thirds)[1]]
     columns += [number(theirs["here"]["error"], 1), number(own["here"]["error"], 1), crashes(theirs), crashes(own)]
     ratios = compared(theirs, own, "error")
     columns.append(f"{min(ratios):.2f}–{max(ratios):.2f}" if ratios else "–")
