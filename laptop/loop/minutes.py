@@ -268,7 +268,7 @@ def beside(cells: dict[str, Cell], raw: dict[str, Cell]) -> float | None:
 def lost(cells: dict[str, Cell] | None) -> str:
     """How many flights of all were lost."""
     if not cells:
-        return "not flown"
+        return "–"
     return f"{sum(cell.lost() for cell in cells.values())} of {sum(len(cell.errors) for cell in cells.values())}"
 
 
@@ -363,8 +363,8 @@ def tables(kept: Kept) -> str:
                 lost(others),
                 number(float(np.mean(errors)) if errors else None, 2),
             ])
-        if all(own.get(condition.name) for condition in lines):
-            bad += row([label(name), *(lost(own[condition.name]) for condition in lines)])
+        if any(own.get(condition.name) for condition in lines):
+            bad += row([label(name), *(lost(own.get(condition.name)) for condition in lines)])
     return "\n".join((RIVALS + rivals, MINUTE + minute, BAD + bad))
 
 

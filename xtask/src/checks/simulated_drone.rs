@@ -11,11 +11,25 @@ use std::{
 };
 
 const PAGE: &str = "docs/loop.md";
+/// A table, and the page that has it.
+#[derive(Clone, Copy)]
+struct Table {
+    page: &'static str,
+    marker: &'static str,
+}
+
+const fn on_page(marker: &'static str) -> Table {
+    Table { page: PAGE, marker }
+}
+
 /// The tables of `minutes.py`: what is sent beside its rivals, flights of a minute, and bad lines.
-const MINUTES: [&str; 3] = ["rivals", "minutes", "lines"];
+const MINUTES: [Table; 3] = [on_page("rivals"), on_page("minutes"), on_page("lines")];
 /// The tables of `table.py`: each code's flights when it is tuned by flying, when it is tuned on its error behind other
 /// filters, and in a third world.
-const TABLES: [&str; 3] = ["loop", "filters", "third"];
+const TABLES: [Table; 3] =
+    [on_page("loop"), on_page("filters"), Table { page: WORLDS, marker: "third" }];
+/// The page of the simulated worlds.
+const WORLDS: &str = "docs/simulation.md";
 /// The page of the networks that fly, and its table of a chip's flights.
 const NETWORKS: &str = "docs/flown-networks.md";
 const CHIP: &str = "chip";
@@ -74,17 +88,17 @@ fn advised(python: &Path) -> Result<String> {
     output(program(python, "advised.py").arg(host::laptop()?))
 }
 
-fn put(markers: [&'static str; 3], printed: &str) -> Result<()> {
-    tables(markers, printed).try_for_each(|(marker, table)| markdown::write(PAGE, marker, &table))
+fn put(places: [Table; 3], printed: &str) -> Result<()> {
+    for (place, table) in tables(places, printed) {
+        markdown::write(place.page, place.marker, &table)?;
+    }
+    Ok(())
 }
 
-/// Splits the output into tables at empty lines, each with its place in the page.
-fn tables(
-    markers: [&'static str; 3],
-    printed: &str,
-) -> impl Iterator<Item = (&'static str, String)> {
+/// Splits the output into tables at empty lines, each with its place.
+fn tables(places: [Table; 3], printed: &str) -> impl Iterator<Item = (Table, String)> {
     let each = printed.split("\n\n").map(|table| format!("\n{}\n\n", table.trim_end()));
-    markers.into_iter().zip(each)
+    places.into_iter().zip(each)
 }
 
 /// Checks that control is stable, that links carry what codecs make, and that the same seeds give the page's picture
@@ -95,10 +109,15 @@ pub fn verify() -> Result<()> {
     run(&mut program(&python, "steps.py"))?;
     drawing::ensure_kept(&draw(&python, "picture.py")?, PICTURE, "cargo xtask write loop")?;
     drawing::ensure_kept(&draw(&python, "crash.py")?, CRASH, "cargo xtask write loop")?;
-    for (name, markers) in [("minutes.py", MINUTES), ("table.py", TABLES)] {
+    for (name, places) in [("minutes.py", MINUTES), ("table.py", TABLES)] {
         let printed = output(program(&python, name).arg("--print"))?;
-        for (marker, table) in tables(markers, &printed) {
-            markdown::ensure_written(PAGE, marker, &table, "cargo xtask write verdicts")?;
+        for (place, table) in tables(places, &printed) {
+            markdown::ensure_written(
+                place.page,
+                place.marker,
+                &table,
+                "cargo xtask write verdicts",
+            )?;
         }
     }
     run(program(&python, "minutes.py").args(["--check", WAY]))?;
@@ -106,14 +125,14 @@ pub fn verify() -> Result<()> {
         advised(&python)? == fs::read_to_string(paths::root().join(ADVISED))?,
         "`advise` takes other banks than {ADVISED} has; `cargo xtask write advised` flies them"
     );
-    let page = fs::read_to_string(paths::root().join(PAGE))?;
-    for option in ["--filters", "--third"] {
+    for (option, name) in [("--filters", PAGE), ("--third", WORLDS)] {
+        let page = fs::read_to_string(paths::root().join(name))?;
         let table = output(program(&python, "table.py").args([option, AGAIN]))?;
         let row = table.lines().last().unwrap_or_default();
         println!("{row}");
         ensure!(
             page.lines().any(|line| line == row),
-            "{PAGE} has another row; `cargo xtask write loop` flies all"
+            "{name} has another row; `cargo xtask write loop` flies all"
         );
     }
     Ok(())
