@@ -20,7 +20,7 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// The parts: those from the catalogue first, then those that are measured or drawn.
-const PARTS: [Part; 20] = [
+const PARTS: [Part; 21] = [
     part("interface", "interface.txt of each published crate", interface::write),
     part("c", "bindings/c/src/codecs.rs, bindings/c/src/sizes.rs", c_library::write),
     part("python", "bindings/python/spikewire/_schemes.pyi", python_package::write_stub),
@@ -29,21 +29,26 @@ const PARTS: [Part; 20] = [
     part("flight", "docs/flight.svg", demo::write),
     part(
         "loop",
-        "docs/loop.md: its tables, docs/loop.svg and docs/crash.svg; some 40 minutes",
+        "docs/loop.md: its tables, docs/loop.svg and docs/crash.svg; well over an hour",
         simulated_drone::write,
     ),
     part(
+        "advised",
+        "docs/loop.md: the flights of the banks that `advise` takes",
+        simulated_drone::write_advised,
+    ),
+    part(
         "verdicts",
-        "docs/loop.md: its tables from laptop/loop/verdicts.json",
+        "docs/loop.md: its tables from laptop/loop/verdicts.json and minutes.json",
         simulated_drone::write_tables,
     ),
     part(
         "chip",
-        "docs/loop.md: the chip's flights, and docs/chip.svg",
+        "docs/flown-networks.md: the chip's flights, and docs/chip.svg",
         simulated_drone::write_chip,
     ),
     part("chips", "docs/chips.md: how well networks agree on the chips", chips::write),
-    part("network-flies", "docs/loop.md: the network's flights", network_flies::write),
+    part("network-flies", "docs/flown-networks.md: the network's flights", network_flies::write),
     part("frames", "docs/frames.png", video::write),
     part("page", "docs/page.png", page::write),
     part("ros", "docs/ros.svg", ros::write),
