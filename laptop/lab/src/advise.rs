@@ -344,6 +344,12 @@ impl Advice {
         Some((best.scheme?, &best.row))
     }
 
+    /// Returns the filter before the advised scheme's encoder, behind which its settings were searched.
+    pub fn best_filter(&self) -> Option<Filter> {
+        let (scheme, _) = self.best()?;
+        Some(self.filter(scheme, self.sample)?.filter)
+    }
+
     fn new(request: &AdviseRequest, channel: usize, recording: &Recording) -> Result<Self> {
         /// Default of the allowed RMSE, as a share of the signal's standard deviation. The share gives a
         /// signal-to-noise ratio of 14 dB.
