@@ -116,33 +116,60 @@ pub fn markdown(events: &[Event]) -> Result<String> {
     Ok(format!("\n{}\n", tables.join("\n")))
 }
 
-/// Formats a line for each subject, with both directions and both cores.
+/// Formats a line for each subject: the cycles of both directions on both cores, and the worst instructions on the first.
 fn each_event(events: &[Event]) -> String {
     let [first, second] = figures::CORES;
     let mut text = format!(
-        "| an event | bytes | {first} write | cycles | worst | read | cycles | worst | {second} write | cycles | worst | read | cycles | worst |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+        "| an event | bytes | {first} write | worst | {first} read | worst | {second} write | {second} read |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|\n"
     );
     for (subject, name) in NAMES {
-        let of = |core, directions: &[&str]| {
+        let find = |core, directions: &[&str]| {
             events.iter().find(|event| {
                 (event.core, event.subject.as_str()) == (core, subject)
                     && directions.contains(&event.direction.as_str())
             })
         };
-        let cell = |event: Option<&Event>| match event {
-            Some(Event { instructions_mean, instructions_max, cycles_mean, .. }) => {
-                let cycles = figures::cell(*cycles_mean);
-                format!("{instructions_mean:.1} | {cycles} | {instructions_max}")
-            }
-            None => "– | – | –".into(),
+        let cycles = |event: Option<&Event>| {
+            event.map_or("–".into(), |event| figures::cell(event.cycles_mean))
         };
-        let Some(write) = of(first, &["encode", "push"]) else { continue };
-        let cells = figures::CORES.map(|core| {
-            let [write, read] = [of(core, &["encode", "push"]), of(core, &["decode", "pop"])];
-            format!("{} | {}", cell(write), cell(read))
-        });
-        text += &format!("| {name} | {} | {} |\n", write.bytes(), cells.join(" | "));
+        let worst = |event: Option<&Event>| {
+            event.map_or("–".into(), |event| event.instructions_max.to_string())
+        };
+        let Some(write) = find(first, &["encode", "push"]) else { continue };
+        let read = find(first, &["decode", "pop"]);
+        text += &format!(
+            "| {name} | {} | {} | {} | {} | {} | {} | {} |\n",
+            write.bytes(),
+            cycles(Some(write)),
+            worst(Some(write)),
+            cycles(read),
+            worst(read),
+            cycles(find(second, &["encode", "push"])),
+            cycles(find(second, &["decode", "pop"])),
+        );
+    }
+    text
+}
+
+/// Formats every figure on both cores as CSV.
+pub fn csv(events: &[Event]) -> String {
+    let mut text = String::from(
+        "core,subject,direction,per,sample,bytes,instructions,cycles_least,cycles_most,worst_instructions\n",
+    );
+    for event in events.iter().filter(|event| figures::CORES.contains(&event.core)) {
+        let cells = [
+            event.core,
+            &event.subject,
+            &event.direction,
+            &event.per,
+            event.sample.as_deref().unwrap_or_default(),
+            &event.bytes_mean.map(|bytes| format!("{bytes:.2}")).unwrap_or_default(),
+            &figures::decimal(Some(event.instructions_mean)),
+            &figures::bounds(event.cycles_mean),
+            &event.instructions_max.to_string(),
+        ];
+        text += &format!("{}\n", cells.join(","));
     }
     text
 }
@@ -206,40 +233,40 @@ const PIXELS: [(&str, &str, u32); 4] = [
 /// Formats the costs of six samples into a bank, on both cores.
 fn banks(events: &[Event]) -> Result<String> {
     let mut text = String::from(
-        "| the bank alone | SF | cycles | worst | HSA, 15 taps | cycles | worst | T-HSA, 15 taps | cycles | worst |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        "| the bank alone | instructions | cycles | worst instructions |\n|---|---:|---:|---:|\n",
     );
     for (core, sample) in figures::CORES.into_iter().zip(SAMPLES) {
-        text += &format!("| {core}, `{sample}` |");
-        for bank in ["bank-sf-6", "bank-hsa-6", "bank-t-hsa-6"] {
-            let bank = find(events, core, bank, "encode", sample)?;
+        for (subject, name) in BANKS {
+            let bank = find(events, core, subject, "encode", sample)?;
             let (mean, worst) = (bank.instructions_mean, bank.instructions_max);
-            text += &format!(" {mean:.1} | {} | {worst} |", figures::cell(bank.cycles_mean));
+            let cycles = figures::cell(bank.cycles_mean);
+            text += &format!("| {core}, `{sample}`, {name} | {mean:.1} | {cycles} | {worst} |\n");
         }
-        text += "\n";
     }
     Ok(text)
 }
 
+/// The banks of six channels.
+const BANKS: [(&str, &str); 3] =
+    [("bank-sf-6", "SF"), ("bank-hsa-6", "HSA, 15 taps"), ("bank-t-hsa-6", "T-HSA, 15 taps")];
+
 /// Formats the costs from six samples to frames, at both rates and on both cores.
 fn six_channels(events: &[Event]) -> Result<String> {
     let mut text = String::from(
-        "| queue and frames | interrupt: bank, queue | cycles | worst | main: frames | cycles | all | cycles | worst 100 ms |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        "| from six samples to frames | interrupt, cycles | worst instructions | main, cycles | both, cycles | worst 100 ms |\n\
+         |---|---:|---:|---:|---:|---:|\n",
     );
     let [first, second] = figures::CORES;
     for (core, sample) in [(first, "f32"), (first, "i16"), (second, "q16.16"), (second, "i16")] {
         for (path, code) in PATHS {
-            let of = |direction| find(events, core, path, direction, sample);
-            let (interrupt, main, all) = (of("interrupt")?, of("main")?, of("all")?);
+            let figures_of = |direction| find(events, core, path, direction, sample);
+            let (interrupt, main, all) =
+                (figures_of("interrupt")?, figures_of("main")?, figures_of("all")?);
             text += &format!(
-                "| {core}, `{sample}`, {code} | {:.1} | {} | {} | {:.1} | {} | {:.1} | {} | {} |\n",
-                interrupt.instructions_mean,
+                "| {core}, `{sample}`, {code} | {} | {} | {} | {} | {} |\n",
                 figures::cell(interrupt.cycles_mean),
                 interrupt.instructions_max,
-                main.instructions_mean,
                 figures::cell(main.cycles_mean),
-                all.instructions_mean,
                 figures::cell(all.cycles_mean),
                 all.instructions_max,
             );
@@ -255,24 +282,23 @@ const PATHS: [(&str, &str); 3] = [
     ("path-200hz", "SF, 200 Hz"),
 ];
 
-/// Describes in a sentence how much of the core six channels take.
+/// Describes in a few sentences how much of the core six channels take.
 pub fn in_a_sentence(events: &[Event]) -> Result<String> {
     let [floats, counts] = SHARES.map(|(sample, _)| {
         let (set, [least, most]) = set(events, sample)?;
         let [low, high] = [least, most].map(|cycles| cycles * RATE / CLOCK * 100.0);
-        let cycles = figures::between([least, most]);
+        let (mean, cycles) = (set.instructions_mean, figures::between([least, most]));
         anyhow::Ok(format!(
-            "{:.1} instructions and {cycles} cycles a set in `{sample}`, {low:.2} to {high:.2} %",
-            set.instructions_mean,
+            "`{sample}` takes {mean:.1} instructions and {cycles} cycles, {low:.2} to {high:.2} %"
         ))
     });
     let (floats, counts) = (floats?, counts?);
     let slow = find(events, PROMISED, "path-200hz", "all", "f32")?;
     Ok(format!(
-        "Six channels of SF at 8 kHz, from samples to frames, are {floats} of a\n\
-         Cortex-M4F at 168 MHz, and {counts}: of a recorded flight with\n\
-         straight lines between its samples, where 8 sets in 100 have a spike. The samples as recorded, 200 a second and two spikes a\n\
-         set, are {:.1} instructions and {} cycles a set in `f32`.\n",
+        "Six channels of SF at 8 kHz, from samples to frames, on a Cortex-M4F at 168 MHz: a sample set in\n\
+         {floats}. {counts}.\n\
+         Both are measured on the recorded flight, linearly interpolated to 8 kHz; 8 % of the sample sets produce a spike.\n\
+         As recorded, at 200 Hz with two spikes a sample set, `f32` takes {:.1} instructions and {} cycles.\n",
         slow.instructions_mean,
         figures::cell(slow.cycles_mean),
     ))
