@@ -5,9 +5,11 @@ use anyhow::Result;
 
 const PAGE: &str = "docs/bits.md";
 const MARKER: &str = "bits";
+/// The mark of a board whose bits are the host's.
+const AGREES: &str = "=";
 
 /// Formats a row for each scheme and a column for each sample type, from lines such as `sf f32 spikes=2074 …` with
-/// their marks. A cell is the host's spike count, followed by a mark for each board.
+/// their marks. A cell is the host's spike count, followed by one mark if all boards agree, or else by one for each.
 pub fn table(flown: &[(String, String)]) -> String {
     let schemes = distinct(flown, 0);
     let samples = distinct(flown, 1);
@@ -20,7 +22,8 @@ pub fn table(flown: &[(String, String)]) -> String {
             let start = format!("{scheme} {sample} spikes=");
             let cell = flown.iter().find_map(|(line, marks)| {
                 let spikes = line.strip_prefix(&start)?.split(' ').next()?;
-                Some(format!("{spikes} {marks}"))
+                let do_all_agree = marks.split(' ').all(|mark| mark == AGREES);
+                Some(format!("{spikes} {}", if do_all_agree { AGREES } else { marks }))
             });
             cell.unwrap_or_default()
         });
@@ -67,8 +70,8 @@ mod tests {
         let expected = "\
             | scheme | f32 | i16 |\n\
             | --- | --- | --- |\n\
-            | step forward (SF) | 7 = = | 9 = = |\n\
-            | Hough spiker (HSA) | 8 = DIFF | 10 = = |\n";
+            | step forward (SF) | 7 = | 9 = |\n\
+            | Hough spiker (HSA) | 8 = DIFF | 10 = |\n";
         assert_eq!(table(&flown), expected);
     }
 }

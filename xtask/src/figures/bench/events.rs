@@ -42,9 +42,6 @@ struct Printed {
     bytes: u32,
 }
 
-/// Sample type for each of the tables' cores.
-const SAMPLES: [&str; 2] = ["f32", "q16.16"];
-
 /// Sample rate of the six channels in Hz; the core and clock for which bounds are promised follow, and for two sample types
 /// the share of the core that stays below.
 const RATE: f64 = 8_000.0;
@@ -112,42 +109,34 @@ pub fn text(events: &[Event]) -> String {
 
 /// Formats the tables of docs/costs.md.
 pub fn markdown(events: &[Event]) -> Result<String> {
-    let tables = [each_event(events), frames(events), banks(events)?, six_channels(events)?];
+    let tables = [each_event(events), frames(events), six_channels(events)?];
     Ok(format!("\n{}\n", tables.join("\n")))
 }
 
-/// Formats a line for each subject: the cycles of both directions on both cores, and the worst instructions on the first.
+/// Formats a line for each subject: the cycles of both directions on the first core, and the worst instructions.
 fn each_event(events: &[Event]) -> String {
-    let [first, second] = figures::CORES;
+    let [core, _] = figures::CORES;
     let mut text = format!(
-        "| an event | bytes | {first} write | worst | {first} read | worst | {second} write | {second} read |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|\n"
+        "| an event, {core} | bytes | write, cycles | worst | read, cycles | worst |\n\
+         |---|---:|---:|---:|---:|---:|\n"
     );
     for (subject, name) in NAMES {
-        let find = |core, directions: &[&str]| {
+        let find = |directions: [&str; 2]| {
             events.iter().find(|event| {
                 (event.core, event.subject.as_str()) == (core, subject)
                     && directions.contains(&event.direction.as_str())
             })
         };
-        let cycles = |event: Option<&Event>| {
-            event.map_or("–".into(), |event| figures::cell(event.cycles_mean))
+        let cells = |event: Option<&Event>| match event {
+            Some(Event { instructions_max, cycles_mean, .. }) => {
+                format!("{} | {instructions_max}", figures::cell(*cycles_mean))
+            }
+            None => "– | –".into(),
         };
-        let worst = |event: Option<&Event>| {
-            event.map_or("–".into(), |event| event.instructions_max.to_string())
-        };
-        let Some(write) = find(first, &["encode", "push"]) else { continue };
-        let read = find(first, &["decode", "pop"]);
-        text += &format!(
-            "| {name} | {} | {} | {} | {} | {} | {} | {} |\n",
-            write.bytes(),
-            cycles(Some(write)),
-            worst(Some(write)),
-            cycles(read),
-            worst(read),
-            cycles(find(second, &["encode", "push"])),
-            cycles(find(second, &["decode", "pop"])),
-        );
+        let Some(write) = find(["encode", "push"]) else { continue };
+        let (bytes, written, read) =
+            (write.bytes(), cells(Some(write)), cells(find(["decode", "pop"])));
+        text += &format!("| {name} | {bytes} | {written} | {read} |\n");
     }
     text
 }
@@ -197,25 +186,21 @@ const NAMES: [(&str, &str); 19] = [
     ("xylo", "Xylo, counts of 10 ms"),
 ];
 
-/// Formats the costs of a pixel in a camera's row, on both cores.
+/// Formats the costs of a pixel in a camera's row, on the first core.
 fn frames(events: &[Event]) -> String {
-    let [first, second] = figures::CORES;
+    let [core, _] = figures::CORES;
     let mut text = format!(
-        "| a pixel of a camera's row | RAM, bytes | {first}: nothing changes | an edge passes | all change | {second}: nothing changes | an edge passes | all change |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|\n"
+        "| a pixel, {core} | RAM, bytes | nothing changes | an edge passes | all change |\n|---|---:|---:|---:|---:|\n"
     );
     for (subject, name, bytes) in PIXELS {
         text += &format!("| {name} | {bytes} |");
-        for core in figures::CORES {
-            for scene in ["rest", "edge", "all"] {
-                let mean = events.iter().find(|event| {
-                    (event.core, event.subject.as_str(), event.direction.as_str())
-                        == (core, subject, scene)
-                });
-                let mean =
-                    mean.map_or("–".into(), |event| format!("{:.1}", event.instructions_mean));
-                text += &format!(" {mean} |");
-            }
+        for scene in ["rest", "edge", "all"] {
+            let mean = events.iter().find(|event| {
+                (event.core, event.subject.as_str(), event.direction.as_str())
+                    == (core, subject, scene)
+            });
+            let mean = mean.map_or("–".into(), |event| format!("{:.1}", event.instructions_mean));
+            text += &format!(" {mean} |");
         }
         text += "\n";
     }
@@ -230,45 +215,21 @@ const PIXELS: [(&str, &str, u32); 4] = [
     ("frame-refractory", "`Refractory<Intensity>`, 1 frame", 2),
 ];
 
-/// Formats the costs of six samples into a bank, on both cores.
-fn banks(events: &[Event]) -> Result<String> {
-    let mut text = String::from(
-        "| the bank alone | instructions | cycles | worst instructions |\n|---|---:|---:|---:|\n",
-    );
-    for (core, sample) in figures::CORES.into_iter().zip(SAMPLES) {
-        for (subject, name) in BANKS {
-            let bank = find(events, core, subject, "encode", sample)?;
-            let (mean, worst) = (bank.instructions_mean, bank.instructions_max);
-            let cycles = figures::cell(bank.cycles_mean);
-            text += &format!("| {core}, `{sample}`, {name} | {mean:.1} | {cycles} | {worst} |\n");
-        }
-    }
-    Ok(text)
-}
-
-/// The banks of six channels.
-const BANKS: [(&str, &str); 3] =
-    [("bank-sf-6", "SF"), ("bank-hsa-6", "HSA, 15 taps"), ("bank-t-hsa-6", "T-HSA, 15 taps")];
-
 /// Formats the costs from six samples to frames, at both rates and on both cores.
 fn six_channels(events: &[Event]) -> Result<String> {
     let mut text = String::from(
-        "| from six samples to frames | interrupt, cycles | worst instructions | main, cycles | both, cycles | worst 100 ms |\n\
-         |---|---:|---:|---:|---:|---:|\n",
+        "| six samples to frames | interrupt, cycles | worst | interrupt and main, cycles |\n|---|---:|---:|---:|\n",
     );
     let [first, second] = figures::CORES;
-    for (core, sample) in [(first, "f32"), (first, "i16"), (second, "q16.16"), (second, "i16")] {
+    for (core, sample) in [(first, "f32"), (first, "i16"), (second, "q16.16")] {
         for (path, code) in PATHS {
-            let figures_of = |direction| find(events, core, path, direction, sample);
-            let (interrupt, main, all) =
-                (figures_of("interrupt")?, figures_of("main")?, figures_of("all")?);
+            let interrupt = find(events, core, path, "interrupt", sample)?;
+            let all = find(events, core, path, "all", sample)?;
             text += &format!(
-                "| {core}, `{sample}`, {code} | {} | {} | {} | {} | {} |\n",
+                "| {core}, `{sample}`, {code} | {} | {} | {} |\n",
                 figures::cell(interrupt.cycles_mean),
                 interrupt.instructions_max,
-                figures::cell(main.cycles_mean),
                 figures::cell(all.cycles_mean),
-                all.instructions_max,
             );
         }
     }

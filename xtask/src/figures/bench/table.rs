@@ -185,9 +185,8 @@ fn codecs(rows: &[Row]) -> String {
     );
     for Line { encode, encode_sample, decode, .. } in of_core(rows, first) {
         let other = of_core(rows, second).find(|line| line.encode.codec == encode.codec);
-        let (in_fixed_point, decoded) = other.map_or((None, None), |line| {
-            (line.encode_sample.cycles_mean, line.decode.cycles_mean)
-        });
+        let (in_fixed_point, decoded) = other
+            .map_or((None, None), |line| (line.encode_sample.cycles_mean, line.decode.cycles_mean));
         text += &format!(
             "| {} | {} | {} | {} | {} | {} | {} | {} |\n",
             name(&encode.codec),
