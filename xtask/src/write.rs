@@ -47,7 +47,7 @@ const PARTS: [Part; 20] = [
     part("frames", "docs/frames.png", video::write),
     part("page", "docs/page.png", page::write),
     part("ros", "docs/ros.svg", ros::write),
-    part("bits", "docs/bits.md: the table", firmware::write),
+    part("bits", "docs/bits.csv", firmware::write),
     part(
         "c-sizes",
         "bindings/c/sizes.csv, bindings/c/README.md: the sizes",

@@ -3,7 +3,7 @@
 use crate::common::{cargo, output, paths};
 use crate::figures::markdown;
 use anyhow::{Result, ensure};
-use std::{fs, iter};
+use std::fs;
 
 const PAGE: &str = "SAFETY.md";
 const MARKER: &str = "faults";
@@ -49,25 +49,22 @@ fn fly() -> Result<Vec<Row>> {
 }
 
 fn read(printed: &str) -> Vec<Row> {
-    let row = |line: &str| {
-        let cells: Vec<&str> =
-            line.strip_prefix('|')?.strip_suffix('|')?.split('|').map(str::trim).collect();
-        let [fault, injected, noticed, recovery, exact] = cells.try_into().ok()?;
-        let [fault, injected, noticed, recovery, exact] =
-            [fault, injected, noticed, recovery, exact].map(str::to_owned);
-        (!fault.starts_with("---")).then_some(Row { fault, injected, noticed, recovery, exact })
-    };
     printed.lines().filter_map(row).collect()
+}
+
+/// Reads a row; none of a line that is no row of five cells, such as the rule below the heads.
+fn row(line: &str) -> Option<Row> {
+    let cells = line.strip_prefix('|')?.strip_suffix('|')?.split('|');
+    let cells: Vec<String> = cells.map(|cell| cell.trim().to_owned()).collect();
+    let [fault, injected, noticed, recovery, exact] = cells.try_into().ok()?;
+    (!fault.starts_with("---")).then_some(Row { fault, injected, noticed, recovery, exact })
 }
 
 /// Formats the faults, each with the kinds of what was noticed, without their numbers.
 fn table(rows: &[Row]) -> String {
     let mut lines = Vec::new();
     for Row { fault, noticed, recovery, .. } in rows {
-        let kinds: Vec<&str> = noticed
-            .split(", ")
-            .map(|counted| counted.trim_start_matches(|sign: char| sign.is_ascii_digit()).trim())
-            .collect();
+        let kinds: Vec<&str> = noticed.split(", ").map(without_number).collect();
         lines.push(format!("| {fault} | {} | {recovery} |", kinds.join(", ")));
     }
     if let Some(Row { fault, exact, .. }) = rows.last() {
@@ -78,14 +75,18 @@ fn table(rows: &[Row]) -> String {
     format!("\n{}\n\n", lines.join("\n"))
 }
 
+fn without_number(counted: &str) -> &str {
+    counted.trim_start_matches(|sign: char| sign.is_ascii_digit()).trim()
+}
+
 /// Formats every figure.
 fn csv(rows: &[Row]) -> String {
-    let quoted = |Row { fault, injected, noticed, recovery, exact }: &Row| {
+    let mut text = String::new();
+    for Row { fault, injected, noticed, recovery, exact } in rows {
         let cells = [fault, injected, noticed, recovery, exact].map(|cell| format!("\"{cell}\""));
-        cells.join(",")
-    };
-    let lines = rows.iter().map(quoted).chain(iter::once(String::new()));
-    lines.collect::<Vec<_>>().join("\n")
+        text += &(cells.join(",") + "\n");
+    }
+    text
 }
 
 #[cfg(test)]

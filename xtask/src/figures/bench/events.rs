@@ -78,6 +78,11 @@ impl Event {
     fn bytes(&self) -> String {
         self.bytes_mean.map_or("–".into(), |bytes| format!("{bytes:.2}"))
     }
+
+    /// Formats two cells: the mean cycles, and the instructions of the most expensive one.
+    fn cycles_and_worst(&self) -> String {
+        format!("{} | {}", figures::cell(self.cycles_mean), self.instructions_max)
+    }
 }
 
 /// Formats all figures as text.
@@ -121,24 +126,26 @@ fn each_event(events: &[Event]) -> String {
          |---|---:|---:|---:|---:|---:|\n"
     );
     for (subject, name) in NAMES {
-        let find = |directions: [&str; 2]| {
-            events.iter().find(|event| {
-                (event.core, event.subject.as_str()) == (core, subject)
-                    && directions.contains(&event.direction.as_str())
-            })
-        };
-        let cells = |event: Option<&Event>| match event {
-            Some(Event { instructions_max, cycles_mean, .. }) => {
-                format!("{} | {instructions_max}", figures::cell(*cycles_mean))
-            }
-            None => "– | –".into(),
-        };
-        let Some(write) = find(["encode", "push"]) else { continue };
-        let (bytes, written, read) =
-            (write.bytes(), cells(Some(write)), cells(find(["decode", "pop"])));
-        text += &format!("| {name} | {bytes} | {written} | {read} |\n");
+        let Some(write) = direction_of(events, core, subject, ["encode", "push"]) else { continue };
+        let read = direction_of(events, core, subject, ["decode", "pop"]);
+        let (bytes, write) = (write.bytes(), write.cycles_and_worst());
+        let read = read.map_or("– | –".into(), Event::cycles_and_worst);
+        text += &format!("| {name} | {bytes} | {write} | {read} |\n");
     }
     text
+}
+
+/// Returns the event of a subject whose direction has one of two names.
+fn direction_of<'a>(
+    events: &'a [Event],
+    core: &str,
+    subject: &str,
+    names: [&str; 2],
+) -> Option<&'a Event> {
+    events.iter().find(|event| {
+        (event.core, event.subject.as_str()) == (core, subject)
+            && names.contains(&event.direction.as_str())
+    })
 }
 
 /// Formats every figure on both cores as CSV.
@@ -163,25 +170,18 @@ pub fn csv(events: &[Event]) -> String {
     text
 }
 
-/// Names of the subjects in the tables.
-const NAMES: [(&str, &str); 19] = [
+/// The subjects on the page, with their names there.
+const NAMES: [(&str, &str); 12] = [
     ("queue", "queue: push, pop"),
     ("queue-lock-free", "queue, lock-free: push, pop"),
     ("raw", "raw: tick, address, sign"),
     ("link-full", "link, full frames"),
     ("link-100ms", "link, a frame every 100 ms"),
-    ("edvs-e0", "eDVS E0, without time"),
     ("edvs-e1", "eDVS E1"),
-    ("edvs-e2", "eDVS E2"),
-    ("edvs-e3", "eDVS E3"),
-    ("edvs-e4", "eDVS E4"),
     ("event-stream", "Event Stream"),
     ("evt2", "EVT2"),
     ("eieio", "EIEIO, a datagram a sample"),
-    ("tinyodin-word", "tinyODIN, the word of 10 bits"),
     ("tinyodin", "tinyODIN, word and handshake"),
-    ("odin-word", "ODIN, the word of 17 bits"),
-    ("akd1500-convolution", "AKD1500, convolutional layer"),
     ("akd1500-dense", "AKD1500, dense layer"),
     ("xylo", "Xylo, counts of 10 ms"),
 ];

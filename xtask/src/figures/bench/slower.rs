@@ -112,7 +112,7 @@ pub fn markdown(rows: &[Row]) -> String {
         lines.entry((exception.against, exception.place.clone())).or_default().push(exception);
     }
     let mut text = String::from(
-        "\n| compared with, core, form | codes above the bound | the largest |\n|---|---:|---|\n",
+        "\n| compared with, core, form | schemes above the bound | the largest |\n|---|---:|---|\n",
     );
     for ((against, place), codecs) in lines {
         let largest = codecs.iter().rev().max_by(|a, b| a.share.total_cmp(&b.share));
@@ -126,7 +126,7 @@ pub fn markdown(rows: &[Row]) -> String {
 
 /// Formats the exceptions as CSV.
 pub fn csv(rows: &[Row]) -> String {
-    let mut text = String::from("compared_with,core_and_form,code,times\n");
+    let mut text = String::from("compared_with,core_and_form,scheme,times\n");
     for Exception { against, place, codec, share } in parsed(rows) {
         text += &format!("{against},{place},{codec},{share:.2}\n");
     }

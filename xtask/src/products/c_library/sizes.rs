@@ -61,7 +61,7 @@ fn table(rows: &[Sizes]) -> String {
 
 fn csv(rows: &[Sizes]) -> String {
     let mut text = String::from(
-        "codec,parameters_f32,parameters_i16,encoder_f32,encoder_i16,decoder_f32,decoder_i16,code,flash_f32,flash_i16\n",
+        "scheme,parameters_f32,parameters_i16,encoder_f32,encoder_i16,decoder_f32,decoder_i16,code,flash_f32,flash_i16\n",
     );
     for Sizes { codec, parameters, encoder, decoder, code, flash } in rows {
         let [parameters, encoder, decoder] =
