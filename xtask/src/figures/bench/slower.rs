@@ -105,21 +105,21 @@ fn parsed(rows: &[Row]) -> impl Iterator<Item = Exception> + use<> {
     })
 }
 
-/// Formats the exceptions, a line for those that have all but the codec's name in common: their number and the largest.
+/// Formats the exceptions, a line for each core and what it is compared with: their number and the largest.
 pub fn markdown(rows: &[Row]) -> String {
     let mut lines: BTreeMap<(&str, String), Vec<Exception>> = BTreeMap::new();
     for exception in parsed(rows) {
-        lines.entry((exception.against, exception.place.clone())).or_default().push(exception);
+        let core = exception.place.split(' ').next().unwrap_or_default().to_owned();
+        lines.entry((exception.against, core)).or_default().push(exception);
     }
-    let mut text = String::from(
-        "\n| compared with, core, form | schemes above the bound | the largest |\n|---|---:|---|\n",
-    );
-    for ((against, place), codecs) in lines {
-        let largest = codecs.iter().rev().max_by(|a, b| a.share.total_cmp(&b.share));
-        let largest =
-            largest.map(|Exception { codec, share, .. }| format!("{codec}, {share:.2} times"));
-        let (count, largest) = (codecs.len(), largest.unwrap_or_default());
-        text += &format!("| {against}, {place} | {count} | {largest} |\n");
+    let mut text =
+        String::from("\n| compared with, core | above the bound | the largest |\n|---|---:|---|\n");
+    for ((against, core), exceptions) in lines {
+        let count = exceptions.len();
+        // The first of equal ones.
+        let largest = exceptions.iter().rev().max_by(|a, b| a.share.total_cmp(&b.share));
+        let Some(Exception { place, codec, share, .. }) = largest else { continue };
+        text += &format!("| {against}, {core} | {count} | {codec}, {place}: {share:.2} times |\n");
     }
     text + "\n"
 }
