@@ -82,7 +82,7 @@ const FAULTS: [(Fault, &str, &str); 27] = [
     (Late, "frames", "a third of the frames overtaken by up to 20 later ones"),
     (FarLate, "frames", "a third of the frames overtaken by 300 later ones"),
     (Cut, "frames", "a third of the frames cut off"),
-    (CutThenIdle, "frames", "the same, and the reader is told when the line is idle"),
+    (CutThenIdle, "frames", "the same, with a report when the line is idle"),
     (Spliced, "frames", "two senders on one line, halves of their frames joined"),
     (Flipped1000, "bits", "bits flipped, 1 in 1000"),
     (Flipped100, "bits", "bits flipped, 1 in 100"),
