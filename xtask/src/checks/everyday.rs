@@ -22,6 +22,7 @@ pub fn fmt() -> Result<()> {
     }
     // Each becomes a project of its own, where its manifest finds the crates.
     schemes.arg(paths::examples().join("templates/build.rs"));
+    schemes.arg(paths::examples().join("templates/nucleo/src/main.rs"));
     for Template { hal, .. } in &TEMPLATES {
         schemes.arg(paths::examples().join(format!("templates/{hal}/src/main.rs")));
     }

@@ -126,7 +126,7 @@ const LONG: &[Step] = &[
     ),
     step!(
         "nucleo",
-        "the whole program on the page of boards, compiled and linked with its HAL",
+        "the whole program that the page of boards names, compiled and linked with its HAL",
         nucleo::nucleo,
     ),
     step!("logging", "defmt out of an emulated Cortex-M4F, decoded on the host", logging::logging),
