@@ -5,6 +5,7 @@ import runpy
 from pathlib import Path
 
 import pytest
+import spikewire as sw
 
 README = Path(__file__).parents[1] / "README.md"
 BOOK = Path(__file__).parents[3] / "docs"
@@ -35,13 +36,19 @@ def test_page(page, tmp_path, monkeypatch):
     exec(compile("\n".join(blocks(page)), str(page), "exec"), {"__name__": "__main__"})
 
 
-def test_pictures_of_the_tutorial_are_those_of_its_code(tmp_path):
-    tutorial = BOOK / "tutorial"
-    runpy.run_path(str(tutorial / "pictures.py"))["draw"](tmp_path)
+@pytest.mark.parametrize("part, count", [("tutorial", 5), ("cards", len(sw.schemes))])
+def test_pictures_are_those_of_the_code(part, count, tmp_path):
+    runpy.run_path(str(BOOK / "pictures.py"))[f"draw_{part}"](tmp_path)
     drawn = {picture.name: picture.read_text() for picture in tmp_path.glob("*.svg")}
-    assert len(drawn) == 5
+    assert len(drawn) == count
+    place = BOOK / ("tutorial" if part == "tutorial" else "reference")
     for name, picture in drawn.items():
-        assert (tutorial / name).read_text() == picture, "python docs/tutorial/pictures.py"
+        assert (place / name).read_text() == picture, f"{name}: python docs/pictures.py"
+
+
+def test_every_scheme_has_a_card():
+    text = (BOOK / "reference/cards.md").read_text()
+    assert [name for name in sw.schemes if f"(card-{name}.svg)" not in text] == []
 
 
 def test_newcomer_needs_five_lines(tmp_path, monkeypatch):

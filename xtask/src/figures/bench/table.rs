@@ -16,7 +16,6 @@ const CODECS: (&str, &str) = ("docs/costs.md", "bench-target");
 const EVENTS: (&str, &str) = ("docs/costs.md", "bench-target events");
 const SLOWER: (&str, &str) = ("docs/costs.md", "bench-target slower");
 const BRIEF: (&str, &str) = ("README.md", "bench-target brief");
-const SIX: (&str, &str) = ("README.md", "bench-target six channels");
 
 /// Codecs of the short table, by the types that its rows name.
 const FEW: [(&str, &str); 5] = [
@@ -136,7 +135,6 @@ fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<((&str, &str),
         tables.insert(0, (CODECS, codecs(rows)));
         tables.push((SLOWER, slower::markdown(rows)));
         tables.push((BRIEF, brief(rows, &markdown::section(BRIEF.0, BRIEF.1)?)));
-        tables.push((SIX, format!("\n{}\n", events::in_a_sentence(events)?)));
     }
     Ok(tables)
 }

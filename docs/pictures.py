@@ -1,14 +1,19 @@
-"""Draws the pictures of "Your first spikes" from what the page's own code computes: `python docs/tutorial/pictures.py`."""
+"""Draws the pictures of "Your first spikes", from what the page's own code computes, and those of the schemes' cards.
+
+`python docs/pictures.py`, with the Python package.
+"""
 
 import re
-import sys
 from pathlib import Path
 
-HERE = Path(__file__).parent
-PAGE = HERE / "first-spikes.md"
+import numpy as np
+import spikewire as sw
+
+DOCS = Path(__file__).parent
+PAGE = DOCS / "tutorial/first-spikes.md"
 # The colours of xtask/src/figures/drawing.rs, which stay apart for the colour-blind and in grey.
 SIGNAL, DECODED, UP, DOWN, QUIET = "#a5a5a5", "#0072b2", "#d55e00", "#000000", "#e6e6e6"
-WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 760, 250, 58, 16, 40, 44
+LEFT, RIGHT, BOTTOM = 58, 16, 44
 
 
 def blocks(page: Path) -> list[str]:
@@ -19,33 +24,36 @@ def blocks(page: Path) -> list[str]:
 class Picture:
     """Curves and marks over time, as SVG on a white ground, so that it can be read on a dark page too."""
 
-    def __init__(self, title, times, values):
-        self.times, self.values = times, values
-        self.parts = [f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>']
+    def __init__(self, title, times, values, size=(760, 250), top=40):
+        self.times, self.values, self.top = times, values, top
+        self.width, self.height = size
+        self.bottom = self.height - BOTTOM
+        self.parts = [f'<rect width="{self.width}" height="{self.height}" fill="white"/>']
         self.text(LEFT, 24, title, size=16)
-        bottom = HEIGHT - BOTTOM
         first, last = times
         for value in range(-3, 4):
-            if values[0] <= value <= values[1]:
+            # Below are spikes, which have no value.
+            if values[0] <= value <= values[1] and (top == 40 or value >= -1):
                 self.line([(first, value), (last, value)], QUIET, 1)
                 self.text(LEFT - 8, self.y(value) + 4, value, anchor="end")
         ticks = 5
         for tick in range(ticks + 1):
             time = first + (last - first) * tick / ticks
-            self.text(self.x(time), bottom + 18, f"{time:.2f}".rstrip("0").rstrip("."), anchor="middle")
-        self.text(WIDTH - RIGHT, bottom + 36, "time, s", anchor="end")
+            self.text(self.x(time), self.bottom + 18, f"{time:.2f}".rstrip("0").rstrip("."), anchor="middle")
+        self.text(self.width - RIGHT, self.bottom + 36, "time, s", anchor="end")
+        middle = (self.top + self.bottom) / 2
         self.parts.append(
-            f'<text x="16" y="{(TOP + bottom) / 2}" transform="rotate(-90 16 {(TOP + bottom) / 2})" '
+            f'<text x="16" y="{middle}" transform="rotate(-90 16 {middle})" '
             'text-anchor="middle" font-size="13">roll rate, rad/s</text>'
         )
 
     def x(self, time):
         first, last = self.times
-        return LEFT + (time - first) / (last - first) * (WIDTH - LEFT - RIGHT)
+        return LEFT + (time - first) / (last - first) * (self.width - LEFT - RIGHT)
 
     def y(self, value):
         low, high = self.values
-        return TOP + (high - value) / (high - low) * (HEIGHT - TOP - BOTTOM)
+        return self.top + (high - value) / (high - low) * (self.bottom - self.top)
 
     def text(self, x, y, text, size=13, anchor="start", colour="#000000"):
         self.parts.append(
@@ -77,8 +85,8 @@ class Picture:
 
     def shade(self, first, last):
         self.parts.append(
-            f'<rect x="{self.x(first):.1f}" y="{TOP}" width="{self.x(last) - self.x(first):.1f}" '
-            f'height="{HEIGHT - TOP - BOTTOM}" fill="{UP}" fill-opacity="0.12"/>'
+            f'<rect x="{self.x(first):.1f}" y="{self.top}" width="{self.x(last) - self.x(first):.1f}" '
+            f'height="{self.bottom - self.top}" fill="{UP}" fill-opacity="0.12"/>'
         )
 
     def spikes(self, times, spikes, base):
@@ -87,11 +95,11 @@ class Picture:
                 self.line([(time, base), (time, base + 0.8 * spike)], UP if spike > 0 else DOWN, 2)
 
     def save(self, path):
-        head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif">'
+        head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" font-family="sans-serif">'
         path.write_text("\n".join([head, *self.parts, "</svg>\n"]))
 
 
-def draw(place: Path) -> None:
+def draw_tutorial(place: Path) -> None:
     """Runs the page's code, and draws the five pictures into a directory."""
     run = {}
     exec(compile("\n".join(blocks(PAGE)), str(PAGE), "exec"), run)
@@ -146,5 +154,43 @@ def draw(place: Path) -> None:
     picture.save(place / "first-5-lost.svg")
 
 
+SECOND = slice(2120, 2319)  # of the recorded flight, 198.5 samples a second
+
+
+def draw_cards(place: Path) -> None:
+    """Draws a second of a recorded flight in every scheme, with the paper's settings for that second."""
+    log = sw.read(DOCS.parent / "data/hexarotor.csv")
+    part = np.ascontiguousarray(log["gyro_x"][SECOND])
+    for name, kind in sw.schemes.items():
+        seeded = {"seed": 1} if name in ("bernoulli", "grf-prob") else {}
+        scheme = kind(paper=True, **seeded).fit(part)
+        spikes = scheme.encode(part)
+        card(part, spikes).save(place / f"card-{name}.svg")
+
+
+def card(samples, spikes) -> Picture:
+    """Draws samples, what they decode to, and their spikes, a row for each neuron."""
+    times = np.arange(samples.size) / samples.size
+    picture = Picture("", (0, 1), (-3.2, 1.2), size=(560, 200), top=8)
+    picture.curve(times, samples, SIGNAL, 3)
+    picture.stairs(times, np.clip(spikes.decode(), -2, 1.2), DECODED, 1.5)
+    array = spikes.array.reshape(samples.size, -1, 1) if spikes.array.ndim < 3 else spikes.array
+    if spikes.array.ndim == 2:  # neurons without sub-timesteps
+        array = spikes.array[:, None, :]
+    _, slots, neurons = array.shape
+    height = 1 / neurons
+    for sign, colour in ((1, UP), (-1, DOWN)):
+        marks = []
+        for sample, slot, neuron in np.argwhere(array == sign):
+            time = (sample + slot / slots) / samples.size
+            base = -3.1 + neuron * height
+            top = picture.y(base + 0.8 * height)
+            marks.append(f"M{picture.x(time):.1f},{picture.y(base):.1f}V{top:.1f}")
+        if marks:
+            picture.parts.append(f'<path d="{"".join(marks)}" stroke="{colour}" stroke-width="1"/>')
+    return picture
+
+
 if __name__ == "__main__":
-    draw(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE)
+    draw_tutorial(DOCS / "tutorial")
+    draw_cards(DOCS / "reference")
