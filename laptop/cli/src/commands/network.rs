@@ -12,7 +12,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::bank::Bank;
-use lab::fit::rounding;
+use lab::fit::{Fit, rounding};
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
     Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model,
@@ -366,7 +366,7 @@ fn driven(
     parameters.check(scheme.info())?;
     let recordings = Recording::read_all(input)?;
     let first = recordings.first().context("there is no channel")?;
-    let (samples, rate) = (first.values.len(), first.rate);
+    let (samples, rate) = (first.values.len(), first.steady_rate()?);
     let mut notes = first.notes();
     let columns: Vec<Vec<f64>> = recordings.into_iter().map(|recording| recording.values).collect();
 
@@ -387,6 +387,13 @@ fn driven(
         columns.len(),
         settings.len()
     );
+    for (column, settings) in columns.iter().zip(&settings) {
+        let mut fit = Fit::new(scheme, settings);
+        fit.observe(column);
+        // A code without a spike shows in the network's own figures.
+        let spikes = 1;
+        notes.extend(fit.notes(settings, spikes).lines().map(|note| Words::from(note.to_owned())));
+    }
     let mut bank = Bank::new(scheme, &settings)?;
     let mut events = Vec::new();
     bank.encode(&columns, &mut events);

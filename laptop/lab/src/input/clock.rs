@@ -253,8 +253,8 @@ impl Clock {
         let step = self.usual_step / self.samples_a_step;
         let by_median = 1e6 / step;
         let is_coarse = (1e6 / through_length - step).abs() < self.resolution;
-        let is_even = (1.0 / EVEN..EVEN).contains(&(by_median / through_length));
-        (!is_even && !is_coarse).then_some(UnevenRate { through_length, by_median })
+        let is_other = is_other_rate(by_median, through_length);
+        (is_other && !is_coarse).then_some(UnevenRate { through_length, by_median })
     }
 
     /// Returns the sample rate in Hz, if it is known, for what must rely on it: a period that is written, or advice.
@@ -425,6 +425,14 @@ impl fmt::Display for Clock {
         if let Some(uneven) = self.uneven() {
             write!(f, "; the rate is uncertain: {uneven}")?;
         }
+        if let (Some(given), Some(measured)) = (self.given_rate, self.measured())
+            && is_other_rate(given, measured)
+        {
+            write!(
+                f,
+                "; the rate that is given, {given:.2} Hz, is not that of samples through length, {measured:.2} Hz"
+            )?;
+        }
         if self.jumps.count > 0 {
             write!(f, "; the rate jumps {} times{}", self.jumps.count, self.jumps)?;
         }
@@ -443,6 +451,11 @@ impl fmt::Display for Clock {
         }
         Ok(())
     }
+}
+
+/// Returns whether two rates differ by a fifth or more.
+pub(crate) fn is_other_rate(rate: f64, other: f64) -> bool {
+    !(1.0 / EVEN..EVEN).contains(&(rate / other))
 }
 
 /// A burst of samples whose times follow each other more closely than the samples were taken.
@@ -488,7 +501,7 @@ pub(super) fn prefers_stamps(stamps: &[i64], arrivals: &[i64]) -> bool {
 /// within a fifth.
 fn burst(times: &[i64], usual: f64) -> Option<Burst> {
     let mean = mean_step(times)?;
-    if mean <= 0.0 || (1.0 / EVEN..EVEN).contains(&(mean / usual)) || usual.is_nan() {
+    if mean <= 0.0 || !is_other_rate(mean, usual) || usual.is_nan() {
         return None;
     }
     let mut steps: Vec<i64> =
