@@ -39,7 +39,7 @@ fn each_command_reports_an_uneven_rate() {
         "info {}".to_owned(),
         "info --json {}".to_owned(),
         format!("encode {sf} {{}} -o {spikes}"),
-        format!("encode {sf} {{}} --format mcap -o {}", path("spikes.mcap")),
+        format!("encode {sf} {{}} -o {}", path("spikes.mcap")),
         format!("score {sf} {{}}"),
         "score {}".to_owned(),
         format!("score {sf} --json {{}}"),
@@ -74,7 +74,7 @@ fn each_command_reports_an_uneven_rate() {
     let network = path("network.json");
     let layer = r#"{"layers": [{"weights": [[64.0, -64.0]], "keep": 0.9, "threshold": 100.0}]}"#;
     std::fs::write(&network, layer).unwrap();
-    let drive = format!("network {network} --chip xylo {sf}");
+    let drive = format!("network {network} {sf}");
     let ran = spikewire(&format!("{drive} {table}"), "");
     assert!(ran.status == 2 && ran.stderr.contains(UNEVEN), "{}", ran.stderr);
     // A data set has no rate of such a log, and says why.

@@ -65,7 +65,11 @@ fn packets_have_the_rate_of_their_samples() {
     let words = ["800.00 Hz by samples through length", "--rate says how many a second are taken"];
     let advise = "advise --evaluations 3 --max-rmse 0.1";
     refused(&format!("{advise} {table}"), "", &words);
-    assert!(ran!("{advise} --rate 800 {table}").output.contains("800"));
+    let advice = ran!("{advise} --rate 800 {table}").output;
+    assert!(
+        advice.contains("800 a second, jitter 3.") && advice.contains(" ms, 0 gaps"),
+        "{advice}"
+    );
     let tune = "tune --scheme sf --max-rmse 0.1 --evaluations 3 --emit flight";
     refused(&format!("{tune} {table}"), "", &words);
     assert!(ran!("{tune} --rate 800 {table}").output.contains("period = 1250 "));
@@ -492,4 +496,18 @@ fn samples_outside_the_range_are_reported_once_with_their_share() {
         let manifest = std::fs::read_to_string(format!("{set}/manifest.jsonl")).unwrap();
         assert!(manifest.contains(words), "{manifest}");
     }
+}
+
+/// Networks as snnTorch exports them: with weights of half precision, and with neurons that keep all of their potential.
+#[test]
+fn networks_of_half_precision_are_read_and_beta_1_is_explained() {
+    let (_directory, steps) = file("steps.txt", "0\n1 2\n\n3\n0 1\n2 3\n".repeat(20));
+    let network = |name: &str| {
+        let of = path(name);
+        format!("network {of} {steps} --as snntorch --reset to-value --on controller")
+    };
+    let ran = ran!("{}", network("half.nir"));
+    assert!(ran.output.contains("-0.178"), "{}", ran.output);
+    let words = ["`tau` holds inf, as snnTorch exports beta=1", "export it as IF"];
+    refused(&network("beta_1.nir"), "", &words);
 }

@@ -278,6 +278,11 @@ impl Clock {
         self.rate().map_or(0, |rate| (1e6 / rate).round() as i64)
     }
 
+    /// Returns the longest step in µs that is no gap, or NaN if no usual step is known.
+    pub(crate) fn longest_step(&self) -> f64 {
+        self.longest_step
+    }
+
     /// Returns the number of gaps.
     pub fn gaps(&self) -> u64 {
         self.gaps.count
