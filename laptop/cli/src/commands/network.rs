@@ -3,7 +3,7 @@
 
 use super::network_rule::RuleOptions;
 use crate::inputs::InputOptions;
-use crate::options::{SchemeOptions, schemes};
+use crate::options::{SchemeOptions, check_ending, schemes};
 use crate::report::{Counts, Log, Report, is_stdout};
 use crate::words;
 use anyhow::{Context, Result, bail, ensure};
@@ -57,7 +57,7 @@ use std::path::{Path, PathBuf};
 /// `--current` set parts of it.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Example:
+Examples:
   spikewire network trained.nir --scheme position --neurons 20 --column gyro_x flight.csv -o src/network.rs
   spikewire network trained.nir --on controller --as snntorch --reset subtract-late spikes.txt -o src/network.rs")]
 pub(crate) struct Network {
@@ -195,6 +195,7 @@ impl Converted {
 /// or if the output cannot be written.
 pub(crate) fn run(options: &Network) -> Result<()> {
     let Network { trained: path, output, .. } = options;
+    check_ending(output.as_deref(), "rs", "Rust")?;
     is_stdout(output.as_deref(), options.json)?;
     let input = &options.input.to_lab()?;
     ensure!(
