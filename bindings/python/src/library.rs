@@ -10,7 +10,7 @@ use lab::advise::AdviseRequest;
 use lab::coding::Coding;
 use lab::emit::Codec;
 use lab::events::PixelEvent;
-use lab::input::{CHUNK, ChannelOptions, Chunk, Clock, InputOptions, Source, TableKind};
+use lab::input::{CHUNK, ChannelOptions, Chunk, Clock, InputOptions, TableKind};
 use lab::plot::Picture;
 use lab::scheme::Scheme;
 use lab::score::Figures;
