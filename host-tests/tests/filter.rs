@@ -431,6 +431,7 @@ where
     let filtered = notch.before(low_pass.before(scheme));
     assert_eq!(encode(&filtered, samples), expected);
     assert_eq!((filtered.latency(), filtered.neurons()), (P::LATENCY, filtered.scheme().neurons()));
+    assert_eq!(filtered.holds_keyframes(), filtered.scheme().holds_keyframes());
 }
 
 #[test]

@@ -293,13 +293,21 @@ impl Hand {
 
     fn keyframe(&mut self, value: i16) -> Option<i16> {
         self.now += 1;
-        let items = [Item::Keyframe(Keyframe::new(tick(self.now), 0, value))];
+        self.send(Item::Keyframe(Keyframe::new(tick(self.now), 0, value)));
+        self.receiver.exact(0)
+    }
+
+    fn event(&mut self, polarity: Polarity) {
+        self.now += 1;
+        self.send(Item::Event(Event { tick: tick(self.now), address: 0, polarity }));
+    }
+
+    fn send(&mut self, item: Item) {
         let mut buffer = [0; MAX_FRAME];
-        let bytes = self.link.next_frame(FromItems(items.into_iter()), &mut buffer).unwrap();
+        let bytes = self.link.next_frame(FromItems([item].into_iter()), &mut buffer).unwrap();
         let mut bytes = bytes.unwrap();
         let received = self.reader.next_frame(&mut bytes).unwrap();
         self.receiver.apply(&received, |_, _, _| ());
-        self.receiver.exact(0)
     }
 }
 
@@ -342,6 +350,51 @@ fn a_sender_that_changes_its_fingerprint_is_not_believed() {
     assert_eq!(heard.last(), Some(&None), "a full frame tells it");
     let other = Withheld::Description { own, sender: Fingerprint::from_bits(9) };
     assert_eq!(hand.receiver.withheld(0), Some(other));
+}
+
+/// A frame without a fingerprint says nothing of the sender's schemes: what was known of them stays so.
+#[test]
+fn a_frame_without_a_fingerprint_changes_no_verdict() {
+    for sender in [None, Some(Fingerprint::from_bits(9))] {
+        let mut hand = Hand::new();
+        let coding = Coding::for_channels(1, PERIOD);
+        let unnamed = Transmitter::new(coding, Session::counted(7)).with_full_every(0);
+        let own = hand.receiver.fingerprint();
+        hand.link = unnamed.with_fingerprint(sender.unwrap_or(own));
+        assert_eq!(hand.keyframe(5), sender.is_none().then_some(5));
+        // The same session without a fingerprint, from its second frame on.
+        hand.link = unnamed;
+        let first = [Item::Keyframe(Keyframe::new(tick(1), 0, 5_i16))];
+        hand.link.next_frame(FromItems(first.into_iter()), &mut [0; MAX_FRAME]).unwrap();
+        assert_eq!(hand.keyframe(5), sender.is_none().then_some(5), "{sender:?}");
+        if let Some(sender) = sender {
+            assert_eq!(hand.receiver.withheld(0), Some(Withheld::Description { own, sender }));
+            continue;
+        }
+        // A sender that was known to have the same schemes is believed again after 256 keyframes that agree.
+        assert_eq!(hand.keyframe(6), None);
+        let heard: Vec<_> = (0..256).map(|_| hand.keyframe(6)).collect();
+        assert_eq!(heard.last(), Some(&Some(6)));
+    }
+}
+
+/// The numbers of a sender's steps begin anew with it: none of those before heals a step of another start.
+#[test]
+fn step_numbers_of_another_start_heal_nothing() {
+    let mut hand = Hand::new();
+    let start = |starts| {
+        let link = Transmitter::new(Coding::for_channels(1, PERIOD), Session::counted(starts));
+        link.with_step_bits(3).with_full_every(0)
+    };
+    hand.link = start(7);
+    assert_eq!(hand.keyframe(0), Some(0));
+    for steps in 1..=5 {
+        hand.event(Polarity::Up);
+        assert_eq!(hand.receiver.exact(0), Some(12 * steps));
+    }
+    hand.link = start(8);
+    hand.event(Polarity::Up);
+    assert_eq!((hand.receiver.exact(0), hand.receiver.estimate(0)), (None, 12 * 6));
 }
 
 fn refusal<P: Start>(scheme: &P, slot_ticks: u32, period: u32) -> Option<String> {

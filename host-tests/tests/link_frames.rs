@@ -5,8 +5,9 @@ use core::num::NonZeroU32;
 use crate::beside::session_from;
 use proptest::prelude::*;
 use spikewire::link::{
-    Coding, FrameView, Framer, LinkError, MAX_FRAME, MIN_FRAME, Reader, Received, Session,
+    Coding, FrameView, Framer, LinkError, MAX_FRAME, MIN_FRAME, Reader, Received, Receiver, Session,
 };
+use spikewire::temporal::StepForward;
 use spikewire::{Event, Keyframe, Polarity, Sample, SampleKind, Tick};
 
 /// The checksum of the specification, bit by bit.
@@ -180,10 +181,13 @@ fn a_frame_is_full_where_its_buffer_or_its_length_ends() {
     assert_eq!(FrameView::new(bytes).unwrap().0.events().count(), count);
 }
 
-/// A frame whose events are these bytes.
-fn with_events(bytes: &[u8]) -> Vec<u8> {
-    let mut framer =
-        Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0);
+/// A sender of one channel, whose frames are all full.
+fn full_frames() -> Framer {
+    Framer::new(Coding::for_channels(1, 1_000), Session::counted(SESSION)).with_full_every(0)
+}
+
+/// The next frame, with these bytes as its events.
+fn with_events(framer: &mut Framer, bytes: &[u8]) -> Vec<u8> {
     let mut buffer = [0; MIN_FRAME];
     let mut frame = framer.start(0.into(), &mut buffer).unwrap().finish().to_vec();
     frame.truncate(MIN_FRAME - 4);
@@ -196,7 +200,7 @@ fn with_events(bytes: &[u8]) -> Vec<u8> {
 #[test]
 fn bits_that_code_no_event_are_told_from_the_end() {
     let read = |bytes: &[u8]| {
-        let frame = with_events(bytes);
+        let frame = with_events(&mut full_frames(), bytes);
         let (view, _) = FrameView::new(&frame).unwrap();
         let mut events = view.events();
         (events.by_ref().count(), events.is_complete())
@@ -211,6 +215,25 @@ fn bits_that_code_no_event_are_told_from_the_end() {
     // 0, then 16 zeros and 17 bits of a number, and the polarity: addresses 65 535 and 65 536.
     assert_eq!(read(&[0, 0, 0b0100_0000, 0, 0]), (1, true));
     assert_eq!(read(&[0, 0, 0b0100_0000, 0, 0b0100_0000]), (0, false), "there is no such address");
+}
+
+/// Their steps are missing: no value is exact after them.
+#[test]
+fn bits_that_code_no_event_leave_no_value_exact() {
+    static SCHEME: StepForward<i16> = StepForward::new(1);
+    let (mut framer, mut buffer) = (full_frames(), [0; 64]);
+    let mut frame = framer.start(0.into(), &mut buffer).unwrap();
+    frame.keyframe(keyframe(0, 0, 3_i16)).unwrap();
+    let first = frame.finish().to_vec();
+    let bytes = [first, with_events(&mut framer, &[0b0110_0001])].concat();
+    let (mut input, mut reader) = (&bytes[..], Reader::<MAX_FRAME>::new());
+    let mut receiver = Receiver::<_, 1>::new(&SCHEME);
+    let mut heard = Vec::new();
+    while let Some(received) = reader.next_frame(&mut input) {
+        receiver.apply(&received, |_, _, _| ());
+        heard.push((receiver.exact(0), receiver.misfits()));
+    }
+    assert_eq!(heard, [(Some(3), 0), (None, 1)]);
 }
 
 /// A sample earlier costs no more than its few bits, and a frame spans 2²⁹ µs to either side.

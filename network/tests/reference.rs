@@ -9,9 +9,10 @@
 )]
 
 use proptest::prelude::*;
+use spikewire::{Event, Polarity, Tick};
 use spikewire_network::{
-    Cuba, Full, Layer, Li, Lif, Network, NoReset, OneToOne, Reset, State, Subtract, SubtractLate,
-    SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Weights,
+    Cuba, Full, Layer, Li, Lif, Network, NoReset, OneToOne, Reset, Spikes, State, Subtract,
+    SubtractLate, SubtractNoDelay, ToValue, ToValueHeld, ToValueLate, Weights,
 };
 
 /// A generator of random bits: arrays of thousands of weights are too large for proptest's strategies.
@@ -480,6 +481,46 @@ fn states_of_other_networks_are_not_taken() {
     let copy = other;
     copy.step(&mut state, &[0]);
     assert_eq!((state.values(), state.rejected()), (&[30.0, 60.0][..], 1));
+}
+
+/// Nor are its currents, and the spikes that act on a recurrent layer. Other neurons make another layer, and a chain counts
+/// the states that its second layer refused.
+#[test]
+fn currents_and_spikes_of_other_networks_are_not_taken() {
+    let weights = Weights::new(&[[1.0]]);
+    let back = Weights::new(&[[10.0]]);
+    let neuron = Cuba::<f32, _>::new(1.0, Lif::<f32, ToValue>::new(1.0, 0.5));
+    let (neurons, others) = ([neuron], [neuron]);
+    let one = Layer::new(&weights, &neurons).recurrent(Full(&back));
+    let other = Layer::new(&weights, &others).recurrent(Full(&back));
+    let mut state = one.state();
+    assert_eq!(one.step(&mut state, &[0]), [0]);
+    assert!(other.step(&mut state, &[]).is_empty());
+    assert_eq!((state.values(), state.rejected()), (&[0.0][..], 1));
+
+    let first = Layer::new(&weights, &others);
+    let (chain, another) = (first.then(one), first.then(other));
+    let mut state = chain.state();
+    chain.step(&mut state, &[0]);
+    assert_eq!(state.rejected(), 0);
+    another.step(&mut state, &[0]);
+    assert_eq!(state.rejected(), 1);
+}
+
+/// Numbers of inputs and addresses of events have 16 bits: those beyond are lost, and do not begin anew.
+#[test]
+fn addresses_do_not_wrap() {
+    let event = |address| Event { tick: Tick::from(0), address, polarity: Polarity::Down };
+    let mut spikes = Spikes::<4>::new();
+    spikes.push_signed(event(32_768));
+    assert_eq!((spikes.as_slice(), spikes.lost()), (&[][..], 1));
+    spikes.push_signed(event(32_767));
+    assert_eq!((spikes.as_slice(), spikes.lost()), (&[65_535][..], 1));
+    spikes.clear();
+    spikes.push(10);
+    let last: Vec<u16> = spikes.events(5.into(), 65_525).map(|event| event.address).collect();
+    assert_eq!(last, [65_535]);
+    assert_eq!(spikes.events(5.into(), 65_526).count(), 0);
 }
 
 /// Sums of 16 bits hold the weights of 256 rows, and one more goes into another sum.

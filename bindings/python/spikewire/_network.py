@@ -65,13 +65,18 @@ class Network:
         decay: Literal["euler", "exponential"] | None = None,
         current: Literal["new", "old", "whole"] | None = None,
         dt: Number | None = None,
+        sample: ArrayLike | None = None,
+        spikes: ArrayLike | None = None,
     ) -> Network:
         """Reads a NIR graph, or a network in JSON or TOML.
 
         A graph does not hold by which rule its neurons step. `framework` says some of it: what it leaves open are keywords,
         which an error lists. `reset` is one for all layers, or one for each that fires; `dt` are the seconds of a step.
+        `spikes` (steps, outputs) are those that the framework gave for `sample` (steps, inputs): the rule that gives the
+        same is found, and nothing else need be said.
 
-        Raises `spikewire.Error` if the file is no network, or the rule is not said as a whole.
+        Raises `spikewire.Error` if the file is no network, or the rule is not said as a whole; if no rule gives `spikes`, or
+        several do.
 
         >>> import pathlib, tempfile, spikewire as sw
         >>> path = pathlib.Path(tempfile.mkdtemp()) / "one.json"
@@ -80,7 +85,42 @@ class Network:
         Network of 2 inputs and layers of 1 neurons
         """
         resets = [] if reset is None else [reset] if isinstance(reset, str) else list(reset)
-        return cls(_native.Network(Path(path), (framework, fires, decay, current), resets, dt))
+        recorded = None
+        if sample is not None or spikes is not None:
+            if sample is None or spikes is None:
+                raise Error("sample and spikes go together: what went into the network, and what it fired")
+            recorded = _trains(sample), _trains(spikes)
+        return cls(_native.Network(Path(path), (framework, fires, decay, current), resets, dt, recorded))
+
+    @classmethod
+    @checked
+    def from_torch(cls, module: Any, sample: ArrayLike) -> Network:
+        """Reads a network of snnTorch, Norse or SpikingJelly as its module stands, without a file.
+
+        The numbers come from the module's layers: chains of `Linear`, `BatchNorm1d`, `Dropout` and neurons. The rule by which
+        neurons decay, fire and reset is found by running the module on `sample` (steps, inputs), counts of spikes: each
+        layer takes the rule that gives all its spikes. The module takes all steps at once, (steps, 1, inputs), or one after
+        the other, (1, inputs). Needs the package ``torch``.
+
+        Raises `spikewire.Error` if a layer is none of these or never fires, if no rule gives its spikes, or if several do.
+
+        Example::
+
+            module = torch.nn.Sequential(torch.nn.Linear(2, 3), snntorch.Leaky(beta=0.9, init_hidden=True))
+            network = sw.Network.from_torch(module, sample)
+            Path("src/network.rs").write_text(network.to_rust(sample))
+        """
+        from . import _from_torch
+
+        counts, _, _ = read(sample)
+        if counts.ndim != 2:
+            raise Error(f"a sample is an array (steps, inputs) of counts of spikes, not {counts.shape}")
+        if not _are_counts(counts):
+            raise Error("a sample has counts of spikes, 0 and above: networks that take values are not read yet")
+        layers = _from_torch.layers_of(module, counts.astype(np.float64))
+        network = cls(_native.Network.from_json(json.dumps({"layers": layers})))
+        network._steps(counts)
+        return network
 
     @classmethod
     @checked
@@ -300,6 +340,15 @@ class Network:
 def _is_array(spikes: Any) -> bool:
     """Whether spikes come as counts, in an array or a table of any library: lists have the numbers of inputs."""
     return hasattr(spikes, "shape") or hasattr(spikes, "__array__") or hasattr(spikes, "collect")
+
+
+def _trains(counts: ArrayLike) -> list[list[int]]:
+    """The numbers of the inputs or neurons that fire in each step, of counts (steps, inputs)."""
+    array, _, _ = read(counts)
+    if array.ndim != 2 or not _are_counts(array):
+        raise Error(f"spikes are an array (steps, inputs) of counts, not {array.shape}")
+    numbers = np.arange(array.shape[1])
+    return [np.repeat(numbers, step.astype(int)).tolist() for step in array]
 
 
 def _are_counts(step: NDArray[Any]) -> bool:

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::anyhow;
 use lab::network::{
-    Asked, ControllerRequest, File, Flown, Model, OnChip, Remarks, State, Trains,
+    Asked, ControllerRequest, File, Flown, Model, OnChip, Outputs, Remarks, State, Trains,
     bring_to_controller,
 };
 use numpy::{PyArray1, PyArray2};
@@ -45,15 +45,24 @@ type Layer = (Vec<f32>, Vec<f32>, Vec<u16>);
 /// Neurons that fire and potentials, by step.
 type Held<'py> = (Trains, Bound<'py, PyArray2<f64>>);
 
+/// Inputs that fire, and outputs that fired in the training framework, by step.
+type Recorded = (Trains, Trains);
+
 /// The framework, when a neuron fires, how it decays and which current it takes, as far as they are said.
 type Said = [Option<String>; 4];
 
 #[pymethods]
 impl Network {
     #[new]
-    fn new(path: PathBuf, said: Said, resets: Vec<String>, dt: Option<f64>) -> PyResult<Self> {
+    fn new(
+        path: PathBuf,
+        said: Said,
+        resets: Vec<String>,
+        dt: Option<f64>,
+        recorded: Option<Recorded>,
+    ) -> PyResult<Self> {
         let [framework, fires, decay, current] = said;
-        let asked = Asked {
+        let mut asked = Asked {
             framework: framework.map(|own| choice("framework", &own)).transpose()?,
             resets: resets.iter().map(|own| choice("reset", own)).collect::<PyResult<_>>()?,
             fires: fires.map(|own| choice("fires", &own)).transpose()?,
@@ -61,8 +70,14 @@ impl Network {
             current: current.map(|own| choice("current", &own)).transpose()?,
             dt,
         };
-        let model = File::read(&path).and_then(|file| file.on_controller(&asked));
-        Ok(model.map_err(value)?.into())
+        let file = File::read(&path).map_err(value)?;
+        if let Some((inputs, outputs)) = recorded {
+            let found = file.find_rule(&asked, &inputs, &Outputs::Spikes(outputs));
+            if let Some(found) = found.map_err(value)? {
+                asked = found.asked;
+            }
+        }
+        Ok(file.on_controller(&asked).map_err(value)?.into())
     }
 
     #[staticmethod]

@@ -139,3 +139,22 @@ def test_a_graph_cannot_subtract_another_amount_than_the_threshold(tmp_path):
 def test_a_recording_without_steps_is_refused(numbers):
     with pytest.raises(ValueError, match="no steps"):
         sw.Network.from_toml(LAYERS).to_rust([], numbers=numbers)
+
+
+def test_recorded_spikes_show_the_rule():
+    """snnTorch's files are the same for all resets; the spikes that it fired are not."""
+
+    def column(steps, at, count):
+        numbers = [[int(word) for word in step[at].split()] for step in steps]
+        return np.array([np.bincount(step, minlength=count) for step in numbers])
+
+    for reset in ("subtract-late", "to-value-late", "subtract-no-delay", "to-value", "none"):
+        steps = [line.split(";") for line in (PEERS / f"snntorch.{reset}.txt").read_text().splitlines()]
+        sample, spikes = column(steps, 0, 6), column(steps, 2, 2)
+        network = sw.Network.from_nir(PEERS / "snntorch.nir", sample=sample, spikes=spikes)
+        assert f'reset = "{reset}"' in network.to_toml()
+        assert np.array_equal(network.run(sample).spikes, spikes)
+    with pytest.raises(sw.Error, match="gives all of them by"):
+        sw.Network.from_nir(PEERS / "snntorch.nir", "snntorch", reset="subtract", sample=sample, spikes=spikes)
+    with pytest.raises(sw.Error, match="go together"):
+        sw.Network.from_nir(PEERS / "snntorch.nir", sample=sample)

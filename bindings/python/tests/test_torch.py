@@ -6,6 +6,7 @@ import json
 import os
 import pickle
 import subprocess
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ torch = pytest.importorskip("torch")
 
 from torch.utils.data import DataLoader
 
+from spikewire import _from_torch
 from spikewire.torch import Controller, Encode, ReckOn, TinyOdin, Windows
 
 X = torch.sin(torch.linspace(0, 60, 4 * 50 * 6)).reshape(4, 50, 6)  # (batch, time, features)
@@ -413,3 +415,173 @@ def test_controller_learns():
     assert not are_the_same(network, network.network(), spikes.numpy())
     with pytest.raises(ValueError, match="counts of spikes"):
         network(-spikes)
+
+
+def spiking(layer):
+    """Weights with which a layer fires now and then."""
+    torch.nn.init.uniform_(layer.weight, -0.5, 1.5)
+    return layer
+
+
+class Trained(torch.nn.Module):
+    """A network as snnTorch's tutorials write it: layers as attributes, time in `forward`."""
+
+    def __init__(self, first, second):
+        super().__init__()
+        self.fc1, self.lif1 = spiking(torch.nn.Linear(6, 12)), first
+        self.norm, self.dropout = torch.nn.BatchNorm1d(12), torch.nn.Dropout(0.2)
+        self.fc2, self.lif2 = spiking(torch.nn.Linear(12, 3)), second
+        with torch.no_grad():
+            self.norm.running_mean.uniform_(-0.2, 0.2)
+            self.norm.running_var.uniform_(0.5, 2)
+            self.norm.weight.uniform_(0.5, 2)
+
+    def forward(self, x):
+        mem1, mem2, spikes = self.lif1.reset_mem(), self.lif2.reset_mem(), []
+        for step in x:
+            fired, mem1 = self.lif1(self.norm(self.fc1(step)), mem1)
+            fired, mem2 = self.lif2(self.fc2(self.dropout(fired)), mem2)
+            spikes.append(fired)
+        return torch.stack(spikes)
+
+
+def snn_trained(**reset):
+    snn = pytest.importorskip("snntorch")
+    return Trained(snn.Leaky(beta=0.9, **reset), snn.Leaky(beta=torch.rand(3), threshold=torch.rand(3) + 0.5, **reset))
+
+
+def snn_chain(*layers):
+    return torch.nn.Sequential(*layers)
+
+
+def snn_synaptic():
+    snn = pytest.importorskip("snntorch")
+    first, second = snn.Synaptic(alpha=0.5, beta=0.8, init_hidden=True), snn.Leaky(beta=0.7, init_hidden=True)
+    return snn_chain(spiking(torch.nn.Linear(6, 12)), first, spiking(torch.nn.Linear(12, 3)), second)
+
+
+def snn_recurrent(**connected):
+    snn = pytest.importorskip("snntorch")
+    first = snn.RLeaky(beta=0.5, init_hidden=True, **connected)
+    # Linear after Linear becomes one layer.
+    last = torch.nn.Linear(12, 5), spiking(torch.nn.Linear(5, 3)), snn.Leaky(beta=0.7, init_hidden=True)
+    return snn_chain(spiking(torch.nn.Linear(6, 12)), first, *last)
+
+
+def norse_chain(name, **parameters):
+    norse = pytest.importorskip("norse.torch")
+    kinds = {
+        "box": (norse.LIFBoxCell, norse.LIFBoxParameters),
+        "cell": (norse.LIFCell, norse.LIFParameters),
+        "whole": (norse.LIF, norse.LIFParameters),
+    }
+    cell, of = kinds[name]
+    own = of(**{key: torch.tensor(value) for key, value in parameters.items()})
+    first, second = spiking(torch.nn.Linear(6, 10)), spiking(torch.nn.Linear(10, 3))
+    return norse.SequentialState(first, cell(own), second, cell(own))
+
+
+def norse_readout():
+    norse = pytest.importorskip("norse.torch")
+    own = norse.LIFParameters(v_th=torch.tensor(0.02), v_leak=torch.tensor(0.01))
+    return norse.SequentialState(norse.LIFRecurrentCell(6, 10, own), torch.nn.Linear(10, 3), norse.LICell())
+
+
+def jelly(mode, *nodes):
+    neuron = pytest.importorskip("spikingjelly.activation_based.neuron")
+    layer = pytest.importorskip("spikingjelly.activation_based.layer")
+    layers = [layer.Linear(6, 10), nodes[0](neuron), layer.Dropout(0.1), layer.Linear(10, 3), nodes[1](neuron)]
+    spiking(layers[0]), spiking(layers[3])
+    pytest.importorskip("spikingjelly.activation_based.functional").set_step_mode(chain := snn_chain(*layers), mode)
+    return chain
+
+
+@pytest.mark.parametrize(
+    ("made", "resets"),
+    [
+        (lambda: snn_trained(), "subtract-late"),
+        (lambda: snn_trained(reset_delay=False), "subtract-no-delay"),
+        (lambda: snn_trained(reset_mechanism="zero"), "to-value-late"),
+        (lambda: snn_trained(reset_mechanism="zero", reset_delay=False), "to-value"),
+        (lambda: snn_trained(reset_mechanism="none"), "none"),
+        (lambda: snn_synaptic(), "subtract-late"),
+        (lambda: snn_recurrent(linear_features=12), "subtract-late"),
+        (lambda: snn_recurrent(V=torch.rand(12), all_to_all=False), "subtract-late"),
+        (lambda: norse_chain("box", tau_mem_inv=300.0, v_th=0.4), "to-value"),
+        (lambda: norse_chain("cell", v_th=0.5, v_leak=0.05), "to-value"),
+        (lambda: norse_chain("whole", v_th=0.5), "to-value"),
+        (lambda: norse_readout(), "to-value"),
+        (lambda: jelly("s", lambda neuron: neuron.LIFNode(tau=2.0), lambda neuron: neuron.IFNode()), "to-value"),
+        (lambda: jelly("m", lambda neuron: neuron.LIFNode(tau=2.0), lambda neuron: neuron.IFNode()), "to-value"),
+        (
+            lambda: jelly(
+                "s",
+                lambda neuron: neuron.ParametricLIFNode(v_reset=None),
+                lambda neuron: neuron.LIFNode(tau=3.0, decay_input=False, v_reset=None),
+            ),
+            "subtract",
+        ),
+    ],
+)
+def test_modules_become_networks(made, resets):
+    """Every layer fires as the module's did, and so does the network as a whole, from its file too."""
+    torch.manual_seed(3)
+    module, sample = made(), torch.rand(200, 6) < 0.4
+    network = sw.Network.from_torch(module, sample)
+    layers = tomllib.loads(network.to_toml())["layers"]
+    assert {layer.get("reset", resets) for layer in layers} == {resets}
+    ran = network.run(sample.numpy())
+    again = sw.Network.from_toml(network.to_toml()).run(sample.numpy())
+    assert np.array_equal(ran.potentials, again.potentials)
+    # The module's own outputs, by its own loop.
+    module.eval()
+    with torch.no_grad():
+        last = _from_torch.run(module, sample.float())[-1]
+    outputs = _from_torch.rows(last.outputs)
+    if "reset" in layers[-1]:
+        assert outputs.any()
+        assert np.array_equal(ran.spikes, outputs)
+    else:
+        assert np.allclose(ran.potentials, outputs, atol=1e-4 * abs(outputs).max())
+
+
+def test_modules_that_are_no_chains_are_refused():
+    snn = pytest.importorskip("snntorch")
+
+    class Skip(torch.nn.Module):
+        def __init__(self):
+            super().__init__()
+            self.first, self.second = snn.Leaky(beta=0.9, init_hidden=True), snn.Leaky(beta=0.9, init_hidden=True)
+
+        def forward(self, x):
+            return self.second(self.first(x) + x)
+
+    sample = np.ones((20, 6))
+    never = snn.Leaky(beta=0.5, threshold=100.0, init_hidden=True)
+    graded = snn.Leaky(beta=0.5, graded_spikes_factor=2.0, init_hidden=True)
+    lateral = snn.Leaky(beta=0.5, inhibition=True, init_hidden=True)
+    for module, asked, words in [
+        (Skip(), sample, "second: .* only chains"),
+        (snn_chain(torch.nn.Conv1d(1, 2, 3), never), sample, "Conv1d is not read"),
+        (snn_chain(torch.nn.Linear(6, 2), never), sample, "1: it never fires"),
+        (snn_chain(torch.nn.Linear(6, 2), graded), sample, "graded"),
+        (snn_chain(torch.nn.Linear(6, 2), lateral), sample, "inhibition"),
+        (snn_chain(torch.nn.Linear(5, 2), never), sample, "neither all steps"),
+        (torch.nn.ReLU(), sample, "ReLU is not read"),
+        (snn_chain(torch.nn.Linear(6, 2), never), sample * 0.5, "takes? values|counts of spikes"),
+        (snn_chain(torch.nn.Linear(6, 2), never), sample[None], r"\(steps, inputs\)"),
+        (snn_chain(torch.nn.Linear(6, 2), never), sample[:1], "2 or more"),
+    ]:
+        with pytest.raises(sw.Error, match=words):
+            sw.Network.from_torch(module, asked)
+
+
+def test_a_rule_that_the_module_does_not_keep_is_found():
+    """snnTorch says one rule, and a subclass does another: the spikes decide."""
+    snn = pytest.importorskip("snntorch")
+    torch.manual_seed(3)
+    layer = snn.Leaky(beta=0.9, init_hidden=True)
+    module = snn_chain(spiking(torch.nn.Linear(6, 12)), layer)
+    sample = torch.rand(200, 6) < 0.4
+    layer.reset_mechanism = "none"  # after the layer was made, this only changes what it says
+    assert 'reset = "subtract-late"' in sw.Network.from_torch(module, sample).to_toml()

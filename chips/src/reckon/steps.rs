@@ -88,7 +88,9 @@ pub enum ReckOnOutputs<'a> {
     /// range is reported as [`Clipped`](ChipError::Clipped). Weights of both signs in one tick can hide a clip: one weight
     /// brings the potential to the end of its range, and the next one away from it. The answer then shows no trace of
     /// it. This cannot occur while the potential is further from the end of its range than the sum of all weights of
-    /// one sign that lead to the output.
+    /// one sign that lead to the output, after the left shift. The driver does not report it: it cannot see which neurons
+    /// fired, so that it would have to refuse every potential that is closer, most of which are right. Outputs that are
+    /// [`Leaky`](Self::Leaky) cannot clip.
     Potentials {
         /// Value of 1 in an answer, in the units of the trained network.
         unit: f32,

@@ -394,6 +394,38 @@ fn a_potential_at_the_end_of_its_range_is_reported() {
     assert_eq!(results[2], Ok([0.0, 16_256.0]));
 }
 
+/// Weights of both signs in one tick, of which the first bring the potential to the end of its range: the answer shows no
+/// trace of it. Weights whose sum of one sign stays within the range come out exactly, in either order.
+#[test]
+fn a_clip_hidden_by_weights_of_the_other_sign_is_the_documented_limit() {
+    let potentials = ReckOnOutputs::Potentials { unit: 1.0 };
+    // Four neurons with the first weight, then four with the second, shifted left by 7 bits.
+    for (first, second, answer) in [
+        // 4 x 16 256 are 65 024, clipped to 32 767. Less 65 024 that is -32 257, halved by the leak.
+        (127, -127, -16_129.0),
+        (-127, 127, 16_128.0),
+        // 4 x 8064 are 32 256.
+        (63, -63, 0.0),
+        (-63, 63, 0.0),
+        (63, -32, 7_936.0),
+    ] {
+        let mut net = clipping(8, 7, 64, [first, 0]);
+        for neuron in 4..8 {
+            net.output_weights[neuron][0] = second;
+        }
+        let results = run_clipping(&net, potentials);
+        assert_eq!(results[2], Ok([answer, 0.0]), "{first} {second}");
+        // The same in the driver's sums needs a smaller shift, and has the right answer.
+        let mut net = clipping(8, 1, 64, [first, 0]);
+        for neuron in 4..8 {
+            net.output_weights[neuron][0] = second;
+        }
+        let leaky = ReckOnOutputs::Leaky { unit: 1.0, keeps: &[0.5; 2] };
+        let sum = 8.0 * (f32::from(first) + f32::from(second));
+        assert_eq!(run_clipping(&net, leaky)[2], Ok([sum, 0.0]), "{first} {second}");
+    }
+}
+
 #[test]
 fn steps_of_another_network_are_refused_before_anything_is_sent() {
     let net = clipping(4, 1, 64, [1, 2]);

@@ -332,6 +332,29 @@ fn names_are_escaped_in_rust_and_toml() {
     assert_eq!(Flight::parse(&written).unwrap().channels, flight.channels);
 }
 
+mod odd_names {
+    include!("flights/odd_names.rs");
+}
+
+/// A module with odd names compiles, and has the names of the file.
+#[test]
+fn a_module_with_odd_names_compiles() {
+    use odd_names::flight;
+
+    let parsed = Flight::parse(include_str!("flights/odd_names.toml")).unwrap();
+    let written = rust(&parsed).unwrap();
+    let path = concat!(env!("CARGO_TARGET_TMPDIR"), "/odd_names.rs");
+    std::fs::write(path, &written).unwrap();
+    let known = include_str!("flights/odd_names.rs");
+    assert!(written == known, "tests/flights has another module than {path}");
+    let names: Vec<&str> = parsed.channels.iter().map(|channel| channel.name.as_str()).collect();
+    assert_eq!(names, flight::NAMES);
+    assert_eq!(parsed.label(), flight::LABEL);
+    assert_eq!(parsed.fingerprint(), flight::receiver().fingerprint());
+    let invisible = ['\u{85}', '\u{301}', '\u{202e}', '\u{2028}'];
+    assert!(!known.contains(invisible), "{known}");
+}
+
 /// The path of a file of taps is relative to the flight file.
 #[test]
 fn taps_lie_beside_the_file() {

@@ -488,6 +488,23 @@ mod tests {
         assert_eq!(pace.elapsed(10_190 + 560, 100), Elapsed::Misfit);
     }
 
+    /// From seven samples of 2 % on, drift and jitter may reach three eighths of a period.
+    #[test]
+    fn drift_beyond_three_eighths_of_a_period_is_unknown() {
+        let mut pace = Pace::new(20_000);
+        pace.set(1_000, 1_000);
+        for samples in 7..13 {
+            for away in [374, -374] {
+                let certain = Elapsed::Samples { samples, slot: 0 };
+                assert_eq!(pace.elapsed(samples as i64 * 1_000 + away, 100), certain);
+            }
+            for away in [376, -376, 390, -390] {
+                let elapsed = pace.elapsed(samples as i64 * 1_000 + away, 100);
+                assert_eq!(elapsed, Elapsed::Unknown, "{samples} {away}");
+            }
+        }
+    }
+
     /// A world of sub-timesteps.
     #[derive(Clone, Copy, Debug)]
     struct World {
@@ -617,6 +634,55 @@ mod tests {
             "the last known sample has no jitter"
         );
         assert_eq!(pace.slot(3 * 64, 100), Elapsed::Samples { samples: 0, slot: 3 });
+        // A clock known less well, with which a quarter of jitter and the doubt of 10 µs are more than 3/8.
+        let mut pace = Pace::new(1_000);
+        pace.set(10_000, 64);
+        for (away, fits) in [(24, true), (-24, true), (25, false), (-25, false), (26, false)] {
+            let slot = pace.slot(10_000 + 3 * 64 + away, 100);
+            let is_told = slot == Elapsed::Samples { samples: 1, slot: 3 };
+            assert!(if fits { is_told } else { slot == Elapsed::Misfit }, "{away} {slot:?}");
+        }
+    }
+
+    /// A heartbeat is a quarter of a sub-timestep early or late, and by what is not known of the pace.
+    #[test]
+    fn a_heartbeat_has_the_jitter_of_two_ticks() {
+        let one = Elapsed::Samples { samples: 1, slot: 0 };
+        let mut pace = Pace::new(1_000);
+        pace.set(10_000, 64);
+        for away in [0, 16, -16, 26, -26] {
+            assert_eq!(pace.beat(10_000 + away, 0), one, "{away}");
+        }
+        assert_eq!([10_027, 9_973].map(|since| pace.beat(since, 0)), [Elapsed::Misfit; 2]);
+        // A clock that was measured for 120 samples is known to 4 µs, whatever its tolerance.
+        let mut pace = Pace::new(20_000);
+        pace.set(10_000, 64);
+        pace.begin();
+        for _ in 0..120 {
+            pace.learn(10_000, 1);
+        }
+        assert_eq!([10_020, 9_980].map(|since| pace.beat(since, 0)), [one; 2]);
+        assert_eq!([10_021, 9_979].map(|since| pace.beat(since, 0)), [Elapsed::Misfit; 2]);
+    }
+
+    /// Half a period after a sample it is over; from some number of samples on, one less is certain.
+    #[test]
+    fn samples_are_over_half_a_period_later() {
+        let mut pace = Pace::new(20_000);
+        pace.set(1_000, 1_000);
+        for (since, samples) in [
+            (-1_000, 0),
+            (499, 0),
+            (500, 1),
+            (1_499, 1),
+            (1_500, 2),
+            (12_000, 12),
+            (13_000, 12),
+            (20_000, 19),
+            (60_000, 58),
+        ] {
+            assert_eq!(pace.over(since), samples, "{since}");
+        }
     }
 
     /// 8 sub-timesteps of 4 µs, 0.5 % fast: with a quarter of jitter and one of doubt the nearest is not the right one.
@@ -635,6 +701,14 @@ mod tests {
         for (pieces, samples, jitter) in [(1, 120, 209), (2, 120, 417), (8, 120, 1_667)] {
             let pace = learned_in(pieces);
             assert_eq!((pace.samples, pace.doubt(100)), (samples, jitter + change + 1), "{pieces}");
+        }
+        // Half of the samples has half of the pieces, and that between them.
+        for (pieces, jitter) in [(1, 329), (2, 658), (8, 1_645)] {
+            let mut pace = learned_in(pieces);
+            for _ in 0..20 {
+                pace.learn(10_000, 1);
+            }
+            assert_eq!((pace.samples, pace.doubt(100)), (76, jitter + change + 1), "{pieces}");
         }
         // More would say little, and the first eight are forgotten.
         assert_eq!(learned_in(10).samples, 24);

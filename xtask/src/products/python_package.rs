@@ -79,6 +79,7 @@ pub fn torch() -> Result<()> {
         &[
             "torch==2.15.0",
             "snntorch==1.0.0",
+            "norse==1.1.0",
             "spikingjelly==2.0.0",
             "nir==1.0.8",
             "mypy==2.4.1",

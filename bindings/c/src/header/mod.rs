@@ -12,7 +12,7 @@ use crate::link::CReader;
 use crate::{Flight, Kept, Queue, Status};
 
 /// Bytes of a reader's storage on any machine.
-const READER: usize = 448;
+const READER: usize = 512;
 const _: () = assert!(size_of::<Kept<CReader>>() <= READER);
 const _: () = assert!(size_of::<Kept<Queue>>() == 6 * size_of::<usize>());
 
@@ -288,19 +288,94 @@ fn sizes_of(codec: &Description) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::literal;
+    use super::{Flight, Layout, core, flight, literal};
+    use std::path::Path;
+    use std::process::Command;
+    use std::{env, fs};
+
+    /// Names that a compiler may take for something else, each with its literal.
+    const NAMES: [(&str, &str); 7] = [
+        ("gyro_x", r#""gyro_x""#),
+        ("e\u{301}1", r#""e\314\2011""#),
+        ("a\u{85}b", r#""a\302\205b""#),
+        ("\u{202e}x", r#""\342\200\256x""#),
+        ("x??/", r#""x\?\?/""#),
+        ("a\"\\\n%s", r#""a\"\\\012%s""#),
+        ("*/ /* // \u{1f681}", r#""*/ /* // \360\237\232\201""#),
+    ];
+
+    const CHANNELS: [&str; NAMES.len()] = {
+        let mut channels = [""; NAMES.len()];
+        let mut place = 0;
+        while place < NAMES.len() {
+            channels[place] = NAMES[place].0;
+            place += 1;
+        }
+        channels
+    };
+
+    /// Compilers, each with its arguments. All but the first may be missing.
+    const COMPILERS: [&[&str]; 4] = [
+        &["gcc", "-x", "c", "-std=c99", "-trigraphs"],
+        &["clang", "-x", "c", "-std=c99", "-trigraphs"],
+        &["g++", "-x", "c++", "-std=c++11", "-trigraphs"],
+        &["clang++", "-x", "c++", "-std=c++11", "-trigraphs"],
+    ];
+
+    /// Writes each name, and a byte of 0 after it.
+    const PROGRAM: &str = "#include \"odd.h\"\n#include <stdio.h>\n\
+        static const char *const names[SW_ODD_CHANNELS] = SW_ODD_NAMES;\n\
+        int main(void) {\n    unsigned i;\n    for (i = 0; i < SW_ODD_CHANNELS; ++i) {\n        \
+        if (printf(\"%s\", names[i]) < 0 || putchar(0) == EOF) {\n            return 1;\n        }\n    }\n    return 0;\n}\n";
 
     #[test]
     fn names_are_literals_of_c() {
-        for (name, written) in [
-            ("gyro_x", r#""gyro_x""#),
-            ("e\u{301}1", r#""e\314\2011""#),
-            ("a\u{85}b", r#""a\302\205b""#),
-            ("\u{202e}x", r#""\342\200\256x""#),
-            ("x??/", r#""x\?\?/""#),
-            ("a\"\\\n%s", r#""a\"\\\012%s""#),
-        ] {
+        for (name, written) in NAMES {
             assert_eq!(literal(name), written);
         }
+    }
+
+    /// Compilers read the names in a flight's header as they are in its file.
+    #[test]
+    fn compilers_read_any_name() {
+        let directory = env::temp_dir().join(format!("spikewire-c-names-{}", std::process::id()));
+        fs::create_dir_all(&directory).unwrap();
+        let layout = Layout { size: 8, align: 8 };
+        let header = flight(&Flight {
+            name: "odd",
+            sample: "float",
+            names: &CHANNELS,
+            counts: &[1.0; NAMES.len()],
+            period: 2_000,
+            keyframe_every: 10,
+            bank: layout,
+            receiver: layout,
+        });
+        for (file, text) in [("odd.h", &*header), ("spikewire.h", &*core()), ("odd.c", PROGRAM)] {
+            fs::write(directory.join(file), text).unwrap();
+        }
+        for (place, arguments) in COMPILERS.into_iter().enumerate() {
+            let printed = printed(&directory, arguments);
+            assert!(printed.is_some() || place > 0, "{} is not installed", arguments[0]);
+            let Some(printed) = printed else {
+                println!("{} is not installed", arguments[0]);
+                continue;
+            };
+            let expected: String = NAMES.iter().map(|(name, _)| format!("{name}\0")).collect();
+            assert_eq!(String::from_utf8(printed).unwrap(), expected, "{arguments:?}");
+        }
+        fs::remove_dir_all(directory).unwrap();
+    }
+
+    /// Compiles and runs the program; `None` if the compiler is not installed.
+    fn printed(directory: &Path, arguments: &[&str]) -> Option<Vec<u8>> {
+        let program = directory.join(arguments[0]);
+        let mut compiler = Command::new(arguments[0]);
+        compiler.args(&arguments[1..]).args(["-Wall", "-Wextra", "-Werror"]);
+        compiler.arg(directory.join("odd.c")).arg("-o").arg(&program);
+        let compiled = compiler.output().ok()?;
+        let words = String::from_utf8_lossy(&compiled.stderr);
+        assert!(compiled.status.success(), "{arguments:?}: {words}");
+        Some(Command::new(program).output().unwrap().stdout)
     }
 }

@@ -6,7 +6,7 @@ use crate::inputs::InputOptions;
 use crate::options::{SchemeOptions, check_ending, schemes};
 use crate::report::{Counts, Log, Report, is_stdout};
 use crate::words;
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use catalogue::run::{Calibrated, Known, SampleType, Settings, Words};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -52,14 +52,16 @@ use std::path::{Path, PathBuf};
 /// neurons decay, fire and reset. The Python package writes it.
 ///
 /// The controller takes any number of layers, `CubaLIF` neurons with currents of any length, and a last layer of
-/// weights without neurons. A NIR file does not contain the order in which neurons decay, fire and reset. The option
-/// `--as` sets this order by the name of the training framework. The options `--reset`, `--fires`, `--decay` and
-/// `--current` set parts of it.
+/// weights without neurons. A NIR file does not contain the order in which neurons decay, fire and reset. Outputs that
+/// the training framework recorded show it (`--trained-spikes`, `--trained-potentials`). Without them, the option `--as`
+/// sets this order by the name of the training framework, and the options `--reset`, `--fires`, `--decay` and `--current`
+/// set parts of it. A wrong choice then changes the spikes, and the report cannot show it.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   spikewire network trained.nir --scheme position --neurons 20 --column gyro_x flight.csv -o src/network.rs
-  spikewire network trained.nir --on controller --as snntorch --reset subtract-late spikes.txt -o src/network.rs")]
+  spikewire network trained.nir --on controller --as snntorch --reset subtract-late spikes.txt -o src/network.rs
+  spikewire network trained.nir --on controller --trained-spikes outputs.txt spikes.txt -o src/network.rs")]
 pub(crate) struct Network {
     /// Network: a NIR graph, JSON, or TOML
     #[arg(value_name = "NETWORK")]
@@ -92,9 +94,10 @@ pub(crate) struct Network {
     /// Tune on the whole of INPUT, without a test on held-out data
     #[arg(long, conflicts_with = "held_out")]
     no_held_out: bool,
-    /// File of the output spikes that the network had in the training framework, one line for each step of INPUT. The
-    /// report compares these spikes with the chip's and, unless the network was trained in a chip's integers, with those
-    /// of the network in double precision
+    /// File of the output spikes that the network had in the training framework, one line for each step of INPUT. They
+    /// show by which rule the neurons of a NIR file step, so that --as, --reset and the like can be left out; a rule that
+    /// gives other spikes is refused. The report compares these spikes with the target's and, unless the network was
+    /// trained in a chip's integers, with those of the network in double precision
     #[arg(long, value_name = "FILE", conflicts_with = "held_out")]
     trained_spikes: Option<PathBuf>,
     /// The same for a network whose outputs never fire: file of the potentials that the outputs had in the training
@@ -120,6 +123,14 @@ pub(crate) struct Network {
     /// Print the comparisons as JSON; needs -o
     #[arg(long, requires = "output", conflicts_with = "live")]
     json: bool,
+}
+
+impl Network {
+    /// Returns the path of the outputs that the training framework computed, for error messages.
+    fn recorded(&self) -> String {
+        let path = self.trained_spikes.as_ref().or(self.trained_potentials.as_ref());
+        path.map(|path| path.display().to_string()).unwrap_or_default()
+    }
 }
 
 /// The comparisons of a network on a recording.
@@ -165,18 +176,35 @@ enum Converted {
 }
 
 impl Converted {
-    fn read(options: &Network, seconds: Option<f64>) -> Result<Self> {
+    /// Reads the network's file. If `outputs` of the training framework are given, they show by which rule its neurons
+    /// step, and the rule is reported on standard error.
+    fn read(options: &Network, driven: &Driven, outputs: Option<&Outputs>) -> Result<Self> {
         let Network { trained: path, target, dt, rule, .. } = options;
         let file = File::read(path)?;
+        let seconds = driven.step_us.map(|step| step * 1e-6);
+        let mut asked = rule.asked(*dt);
+        if let Some(outputs) = outputs {
+            let found = file.find_rule(&asked, &driven.steps, outputs);
+            if let Some(found) = found.map_err(|error| error.at(options.recorded()))? {
+                let (rule, steps) = (found.settings(words::option), driven.steps.len());
+                eprintln!("rule found: {rule} gives the recorded outputs in all {steps} steps");
+                asked = found.asked;
+            }
+        } else if matches!(file, File::Nir(_)) {
+            eprintln!(
+                "the rule is as the options say: a wrong one gives other spikes, which --trained-spikes or \
+                 --trained-potentials would show"
+            );
+        }
         if *target == CONTROLLER {
-            return Ok(Self::Controller(file.on_controller(&rule.asked(*dt))?));
+            return Ok(Self::Controller(file.on_controller(&asked)?));
         }
         ensure!(
             rule.numbers == Numbers::Float,
             "the chips have numbers of their own: --on controller takes others"
         );
         let chip = CHIPS.iter().find(|chip| chip.name() == *target).context("no such chip")?;
-        Ok(Self::Chip(*chip, file.on_chip(&rule.asked(*dt), seconds)?))
+        Ok(Self::Chip(*chip, file.on_chip(&asked, seconds)?))
     }
 
     /// Returns the network's number of inputs, and the name of its first layer.
@@ -206,10 +234,11 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         Some(scheme) => driven(options, scheme, input, None)?,
         None => spiking(&input.input)?,
     };
-    let seconds = driven.step_us.map(|step| step * 1e-6);
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let converted =
-        Converted::read(options, seconds).map_err(|error| error.context(name.clone()))?;
+    let framework = framework(options)?;
+    let framework = framework.as_ref();
+    let converted = Converted::read(options, &driven, framework)
+        .map_err(|error| error.context(name.clone()))?;
     driven.check(converted.inputs(), options.scheme).with_context(|| name.clone())?;
     let held_out = options.held_out.as_ref().map(|path| {
         let input = Input { input: path.clone(), ..input.clone() };
@@ -223,7 +252,6 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         held_out.check(converted.inputs(), options.scheme).with_context(|| name.clone())?;
     }
 
-    let framework = framework(options, &converted, driven.steps.len())?;
     // Without a second recording, the last third of the first is held out.
     let steps = driven.steps.len();
     // Nothing is tuned for the controller, whose arithmetic is exact or nearly so.
@@ -243,7 +271,7 @@ pub(crate) fn run(options: &Network) -> Result<()> {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
     };
-    let (tuned, framework, compare) = (&tuned, framework.as_ref(), options.compare);
+    let (tuned, compare) = (&tuned, options.compare);
     let (progress, numbers) = (&progress, options.rule.numbers);
     let brought = match &converted {
         Converted::Chip(chip, trained) => {
@@ -251,7 +279,10 @@ pub(crate) fn run(options: &Network) -> Result<()> {
             bring(&Request { chip, trained, tuned, held_out, framework, compare, progress })
         }
         Converted::Controller(model) => {
-            bring_to_controller(&ControllerRequest { model, numbers, tuned, held_out, progress })
+            let framework = framework.filter(|_| held_out.is_none());
+            let request =
+                ControllerRequest { model, numbers, tuned, held_out, framework, progress };
+            bring_to_controller(&request)
         }
     };
     bar.finish_and_clear();
@@ -442,21 +473,13 @@ fn spiking(path: &Path) -> Result<Driven> {
     })
 }
 
-/// Reads the outputs that the training framework computed, if a file of them is given, and checks that they are those
-/// of the network in `steps` steps.
-fn framework(options: &Network, converted: &Converted, steps: usize) -> Result<Option<Outputs>> {
-    let (path, outputs) = match (&options.trained_spikes, &options.trained_potentials) {
-        (Some(path), _) => (path, Outputs::Spikes(spiking(path)?.steps)),
-        (_, Some(path)) => (path, Outputs::Potentials(potentials(path)?)),
-        _ => return Ok(None),
-    };
-    let Converted::Chip(_, trained) = converted else {
-        bail!(
-            "--trained-spikes and --trained-potentials are for the chips: the controller's rule is exact"
-        )
-    };
-    outputs.check(trained, steps).map_err(|error| error.at(path.display().to_string()))?;
-    Ok(Some(outputs))
+/// Reads the outputs that the training framework computed, if a file of them is given.
+fn framework(options: &Network) -> Result<Option<Outputs>> {
+    match (&options.trained_spikes, &options.trained_potentials) {
+        (Some(path), _) => Ok(Some(Outputs::Spikes(spiking(path)?.steps))),
+        (_, Some(path)) => Ok(Some(Outputs::Potentials(potentials(path)?))),
+        _ => Ok(None),
+    }
 }
 
 /// Reads a file of the outputs' potentials: one line for each step, with a number for each output.

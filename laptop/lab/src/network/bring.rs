@@ -42,39 +42,47 @@ pub enum Outputs {
 }
 
 impl Outputs {
-    /// Checks that these are outputs of the network `trained`, in `steps` steps.
+    /// Checks that these can be outputs of a network, in `steps` steps.
     ///
     /// # Errors
     /// Returns an error if there are more or fewer steps, if spikes are given of outputs that never fire, or potentials
     /// of outputs that fire, or if a step has outputs that the network does not have, or too few potentials.
-    pub fn check(&self, trained: &Trained, steps: usize) -> Result<()> {
+    pub(super) fn check(&self, of: &OutputLayer, steps: usize) -> Result<()> {
         let has_steps = |given| -> Result<()> {
             ensure!(given == steps, NetworkKind::OutputSteps { given, steps });
             Ok(())
         };
-        match (self, &trained.readout) {
-            (Self::Spikes(given), None) => {
+        let OutputLayer { outputs, fires } = *of;
+        match (self, fires) {
+            (Self::Spikes(given), true) => {
                 has_steps(given.len())?;
-                let outputs = trained.layers.last().map_or(0, |layer| layer.neurons.len());
-                for (step, &output) in
-                    (1..).zip(given).flat_map(|(at, fired)| fired.iter().map(move |one| (at, one)))
-                {
-                    let is_known = usize::from(output) < outputs;
-                    ensure!(is_known, NetworkKind::SpikeOutput { step, output, outputs });
+                for (step, fired) in (1..).zip(given) {
+                    for &output in fired {
+                        let is_known = usize::from(output) < outputs;
+                        ensure!(is_known, NetworkKind::SpikeOutput { step, output, outputs });
+                    }
                 }
             }
-            (Self::Potentials(given), Some(readout)) => {
+            (Self::Potentials(given), false) => {
                 has_steps(given.len())?;
-                let outputs = readout.weights.len();
                 for (step, given) in (1..).zip(given.iter().map(Vec::len)) {
                     ensure!(given == outputs, NetworkKind::Potentials { step, given, outputs });
                 }
             }
-            (Self::Spikes(_), Some(_)) => return Err(NetworkKind::OutputsNeverFire.into()),
-            (Self::Potentials(_), None) => return Err(NetworkKind::OutputsFire.into()),
+            (Self::Spikes(_), false) => return Err(NetworkKind::OutputsNeverFire.into()),
+            (Self::Potentials(_), true) => return Err(NetworkKind::OutputsFire.into()),
         }
         Ok(())
     }
+}
+
+/// The layer of a network whose spikes or potentials are its outputs.
+#[derive(Clone, Copy)]
+pub(super) struct OutputLayer {
+    /// Number of outputs.
+    pub outputs: usize,
+    /// Whether the outputs are neurons that fire.
+    pub fires: bool,
 }
 
 /// A recording on which a network is tested after its parameters were tuned on a different recording.
@@ -192,26 +200,16 @@ pub struct LayerFigures {
 /// chip's model refuses a call.
 pub fn bring(request: &Request) -> Result<Brought> {
     let Request { chip, trained, tuned, held_out, framework: own, compare, progress } = *request;
-    if let Some(own) = own {
-        own.check(trained, held_out.map_or(tuned, |all| all.steps).len())?;
-    }
     let mut original = Original::of(trained, tuned);
+    if let Some(own) = own {
+        own.check(&trained.outputs(), held_out.map_or(tuned, |all| all.steps).len())?;
+    }
     let mut other = held_out.map(|held_out| Original::of(trained, held_out.steps));
     let from = held_out.map_or(0, |held_out| held_out.from);
-    let (mut reading, mut reading_error) = (None, None);
+    let mut reading = Reading::default();
     if let Some(own) = own {
-        let read = other.as_ref().unwrap_or(&original);
-        match own {
-            _ if trained.integers => {}
-            Outputs::Spikes(own) => {
-                let read = read.fired.last();
-                reading = read.and_then(|read| agreement(read.get(from..)?, own.get(from..)?));
-            }
-            Outputs::Potentials(own) => {
-                let size = root_mean_square(own.iter().skip(from).flatten().copied());
-                let error = difference(read.potentials.iter().skip(from), own.iter().skip(from));
-                reading_error = (size > 0.0).then(|| error / size);
-            }
+        if !trained.integers {
+            reading = Reading::of(other.as_ref().unwrap_or(&original), own, from);
         }
         original.replace_outputs(own);
         if let Some(other) = &mut other {
@@ -232,7 +230,38 @@ pub fn bring(request: &Request) -> Result<Brought> {
         .zip(other)
         .map(|(all, original)| figures(&original, &*network, all.steps, all.from))
         .transpose()?;
-    Ok(Brought { network, tuned, held_out, costs, reading, reading_error })
+    let Reading { share, error } = reading;
+    Ok(Brought { network, tuned, held_out, costs, reading: share, reading_error: error })
+}
+
+/// How far a network's outputs in double precision are those of the training framework: see [`Brought::reading`] and
+/// [`Brought::reading_error`].
+#[derive(Default)]
+pub(super) struct Reading {
+    pub share: Option<f64>,
+    pub error: Option<f64>,
+}
+
+impl Reading {
+    /// Compares the outputs of `original` with those of the framework from step `from` on.
+    pub(super) fn of(original: &Original, framework: &Outputs, from: usize) -> Self {
+        match framework {
+            Outputs::Spikes(framework) => {
+                let fired = original.fired.last().and_then(|fired| fired.get(from..));
+                let share = match (fired, framework.get(from..)) {
+                    (Some(fired), Some(framework)) => agreement(fired, framework),
+                    _ => None,
+                };
+                Self { share, error: None }
+            }
+            Outputs::Potentials(framework) => {
+                let size = root_mean_square(framework.iter().skip(from).flatten().copied());
+                let potentials = original.potentials.iter().skip(from);
+                let error = difference(potentials, framework.iter().skip(from));
+                Self { share: None, error: (size > 0.0).then(|| error / size) }
+            }
+        }
+    }
 }
 
 /// Compares two spike trains step by step. Among the steps in which at least one of them has a spike, returns the share
@@ -270,7 +299,7 @@ impl Original {
     }
 
     /// Replaces the outputs by the first of `framework`, those that the training framework computed.
-    fn replace_outputs(&mut self, framework: &Outputs) {
+    pub(super) fn replace_outputs(&mut self, framework: &Outputs) {
         match framework {
             Outputs::Spikes(framework) => {
                 if let Some(last) = self.fired.last_mut() {

@@ -1,6 +1,6 @@
 //! The reasons for which a network cannot be read, or cannot be brought onto a chip or the controller.
 
-use super::controller::{Choice, Framework};
+use super::controller::{Asked, Choice, Framework};
 use crate::error::{At, room};
 use crate::{Error, Place, Spot};
 use catalogue::kinds;
@@ -16,6 +16,22 @@ kinds! {
         OpenRule { framework: Option<Framework>, open: Vec<Choice> } => (
             "the file does not say by which rule its neurons step: {}",
             super::controller::words(spell, *framework, open)
+        ),
+        NoRule { nearest: Box<Asked>, step: usize, steps: usize } => (
+            "no rule gives the recorded outputs: with {}, the nearest, they part in step {step} of {steps}; the outputs may be \
+             those of another network, another input or another {}",
+            nearest.settings(spell),
+            spell("dt")
+        ),
+        OtherRule { fits: Box<Asked> } => (
+            "by the rule that was asked for the network does not give the recorded outputs; it gives all of them by {}",
+            fits.settings(spell)
+        ),
+        SeveralRules { rules: Vec<Asked>, steps: usize } => (
+            "{} rules give the recorded outputs in all {steps} steps: a recording with more spikes would tell them apart; say \
+             which:\n  {}",
+            rules.len(),
+            rules.iter().map(|rule| rule.settings(spell)).collect::<Vec<_>>().join("\n  ")
         ),
         NoNetwork => (
             "no network: it is neither a NIR graph (HDF5) nor JSON, and its name does not end in .toml"

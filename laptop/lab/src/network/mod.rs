@@ -17,8 +17,8 @@ pub use bring::{
 };
 pub use chip::{CHIPS, Chip, Compare, OnChip, Ran, Remarks, Stepped};
 pub use controller::{
-    Asked, Choice, ControllerRequest, Current, Decay, Fires, Flown, Framework, Model, Numbers,
-    Reset, Rule, State, bring_to_controller,
+    Asked, Choice, ControllerRequest, Current, Decay, Fires, Flown, Found, Framework, Model,
+    Numbers, Reset, Rule, State, bring_to_controller,
 };
 pub use costs::Cost;
 pub use distance::Distance;
@@ -64,6 +64,34 @@ impl File {
             return Ok(Self::Toml(Model::from_toml(&text).at(|| path)?));
         }
         Err(NetworkKind::NoNetwork.at(path))
+    }
+
+    /// Finds the rule by which the network gives the recorded `outputs`. The parts in `asked` are kept. Returns `None` if
+    /// the file holds the rule itself, as all files except NIR graphs do.
+    ///
+    /// # Errors
+    /// Returns an error if the recording is not one of this network, if no rule gives its outputs, or if several do.
+    pub fn find_rule(
+        &self,
+        asked: &Asked,
+        inputs: &Trains,
+        outputs: &Outputs,
+    ) -> Result<Option<Found>> {
+        let layer = match self {
+            Self::Plain(trained) => trained.outputs(),
+            Self::Nir(chain) => chain.outputs(),
+            Self::Toml(model) => model.outputs(),
+        };
+        outputs.check(&layer, inputs.len())?;
+        let Self::Nir(chain) = self else { return Ok(None) };
+        for step in inputs {
+            let is_known = step.iter().all(|input| usize::from(*input) < chain.inputs());
+            fault::ensure!(
+                is_known,
+                NetworkKind::NoInputs { inputs: chain.inputs(), step: step.clone() }
+            );
+        }
+        controller::find(chain, asked, inputs, outputs).map(Some)
     }
 
     /// Converts the network to the form that `spikewire-network` runs on the flight controller. If the file leaves open

@@ -3,6 +3,7 @@
 //!
 //! Source: J. E. Pedersen et al., *Neuromorphic intermediate representation*, Nature Communications 15 (2024), table 1.
 
+use crate::network::bring::OutputLayer;
 use crate::network::fault::{Context, LayerKind, NirKind, Result, ensure};
 use crate::{Place, Spot};
 use hdf5_reader::group::Group;
@@ -15,6 +16,7 @@ use std::collections::BTreeMap;
 const MOST_BYTES: usize = 1 << 26;
 
 /// The layers of a NIR graph, from input to output. Time constants are in seconds.
+#[derive(Clone)]
 pub struct Chain {
     pub(super) stages: Vec<Stage>,
     /// The last layer, if its neurons never fire.
@@ -26,6 +28,31 @@ pub struct Chain {
     pub(super) notes: Vec<String>,
 }
 
+impl Chain {
+    /// Returns the layer whose spikes or potentials are the outputs.
+    pub(super) fn outputs(&self) -> OutputLayer {
+        let weights = self.sum.as_ref().or(self.readout.as_ref().map(|readout| &readout.weights));
+        match (weights, self.stages.last()) {
+            (Some(weights), _) => OutputLayer { outputs: weights.rows.len(), fires: false },
+            (None, Some(last)) => OutputLayer { outputs: last.weights.rows.len(), fires: true },
+            (None, None) => OutputLayer { outputs: 0, fires: true },
+        }
+    }
+
+    /// Returns the number of inputs.
+    pub(super) fn inputs(&self) -> usize {
+        let stage = self.stages.first().or(self.readout.as_ref()).map(|stage| &stage.weights);
+        let weights = stage.or(self.sum.as_ref());
+        weights.and_then(|weights| weights.rows.first()).map_or(0, Vec::len)
+    }
+
+    /// Returns whether a layer has neurons with a synaptic current.
+    pub(super) fn has_currents(&self) -> bool {
+        self.stages.iter().chain(&self.readout).any(|stage| stage.neurons.synapse.is_some())
+    }
+}
+
+#[derive(Clone)]
 pub(super) struct Stage {
     pub(super) weights: Weights,
     /// Recurrent weights, from neurons of the layer to neurons of the same layer; `None` if the layer is not recurrent.
@@ -33,12 +60,14 @@ pub(super) struct Stage {
     pub(super) neurons: Neurons,
 }
 
+#[derive(Clone)]
 pub(super) struct Weights {
     /// The weights: one row for each neuron, with one weight for each input.
     pub(super) rows: Vec<Vec<f64>>,
     pub(super) bias: Option<Vec<f64>>,
 }
 
+#[derive(Clone)]
 pub(super) struct Neurons {
     /// Name of the node in the graph.
     name: String,
@@ -53,17 +82,20 @@ pub(super) struct Neurons {
     pub(super) synapse: Option<Synapse>,
 }
 
+#[derive(Clone)]
 pub(super) struct Synapse {
     pub(super) tau: Array,
     pub(super) weight: Array,
 }
 
+#[derive(Clone)]
 pub(super) struct Leak {
     pub(super) tau: Array,
     pub(super) rest: Array,
 }
 
 /// A parameter of neurons: one number for each neuron, or a single number for all.
+#[derive(Clone)]
 pub(super) struct Array(pub(super) Vec<f64>);
 
 impl Array {

@@ -1,5 +1,6 @@
 //! A trained network in double precision, and its simulation.
 
+use super::bring::OutputLayer;
 use super::controller::{Asked, Fires, Reset};
 use crate::network::fault::{Context, LayerKind, NetworkKind, Result, ensure};
 
@@ -246,6 +247,15 @@ pub(super) fn fits(inputs: usize, before: &str, neurons: usize) -> Result<()> {
 }
 
 impl Trained {
+    /// Returns the layer whose spikes or potentials are the outputs.
+    pub(super) fn outputs(&self) -> OutputLayer {
+        match (&self.readout, self.layers.last()) {
+            (Some(readout), _) => OutputLayer { outputs: readout.weights.len(), fires: false },
+            (None, Some(last)) => OutputLayer { outputs: last.neurons.len(), fires: true },
+            (None, None) => OutputLayer { outputs: 0, fires: true },
+        }
+    }
+
     /// Makes a network whose outputs are the spikes of the last of `layers`.
     ///
     /// # Errors

@@ -13,6 +13,7 @@ pub const SAMPLES: [&str; 4] = ["FLY_f32", "FLY_i16", "FLY_q8_8", "FLY_q16_16"];
 /// Checks that generated files agree with the catalogue, and that C on the host under sanitizers, and on one core,
 /// equals the crate.
 pub fn verify() -> Result<()> {
+    in_headers()?;
     let archive = host_archive()?;
     ensure_written()?;
     compiler::record()?;
@@ -27,6 +28,12 @@ pub fn verify() -> Result<()> {
     compare("host", &shell::output(&mut Command::new(flight))?, &rust)?;
     fly("M4F", &rust)?;
     flights::verify()
+}
+
+/// Runs the library's own tests, which compile headers with odd names.
+fn in_headers() -> Result<()> {
+    let mut tests = shell::cargo("test --quiet --no-default-features --features header --lib");
+    shell::run(tests.current_dir(super::room()).env("CARGO_TARGET_DIR", super::work()))
 }
 
 /// Runs the tests on the host with the library, too, under the address sanitizer.

@@ -61,12 +61,12 @@ impl Model {
     /// # Errors
     /// Returns an error if part of the rule remains open, or if the rule does not fit the graph.
     pub(in super::super) fn of_nir(chain: Chain, asked: &Asked) -> Result<Self> {
+        let has_currents = chain.has_currents();
         let Chain { stages, readout, sum, mut notes } = chain;
-        let all = || stages.iter().chain(&readout);
         let rule = asked.rule(Needs {
             fires: !stages.is_empty(),
-            current: all().any(|stage| stage.neurons.synapse.is_some()),
-            time: all().next().is_some(),
+            current: has_currents,
+            time: !stages.is_empty() || readout.is_some(),
         })?;
         let (firing, resets) = (stages.len(), &asked.resets);
         ensure!(

@@ -2,6 +2,7 @@
 
 mod emit;
 mod file;
+mod find;
 mod form;
 mod net;
 mod number;
@@ -10,12 +11,14 @@ mod open;
 mod quantise;
 mod rule;
 
+pub use find::Found;
+pub(super) use find::find;
 pub use open::Choice;
 pub(super) use open::words;
 pub use rule::{Asked, Current, Decay, Fires, Framework, Reset, Rule};
 
 use super::Trains;
-use super::bring::{Brought, HeldOut, Original, figures};
+use super::bring::{Brought, HeldOut, Original, OutputLayer, Outputs, Reading, figures};
 use super::chip::{OnChip, Ran, Remarks, Stepped};
 use super::costs::Cost;
 use crate::network::fault::{FitKind, Result};
@@ -55,6 +58,9 @@ pub struct ControllerRequest<'a> {
     pub tuned: &'a Trains,
     /// A second recording, on which the converted network is only tested; `None` to test it on `tuned` only.
     pub held_out: Option<HeldOut<'a>>,
+    /// Outputs that the training framework computed in all steps of `tuned`. `None` if they are not known, or if there
+    /// is a second recording.
+    pub framework: Option<&'a Outputs>,
     /// Called during the conversion to integers, with the number of finished neurons and the total number of neurons.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
 }
@@ -113,6 +119,12 @@ impl Model {
         let mut layers: Vec<_> = self.net.layers.iter().map(named).collect();
         let readout = if self.is_silent() { layers.pop() } else { None };
         Original { layers, readout, fired, potentials }
+    }
+
+    /// Returns the layer whose spikes or potentials are the outputs.
+    pub(super) fn outputs(&self) -> OutputLayer {
+        let outputs = self.net.layers.last().map_or(0, |layer| layer.neurons.len());
+        OutputLayer { outputs, fires: !self.is_silent() }
     }
 
     /// Returns whether the network's outputs are potentials of neurons that never fire.
@@ -184,11 +196,17 @@ impl Flown {
 /// # Errors
 /// Returns an error if the converted network cannot be run on the recordings.
 pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
-    let ControllerRequest { model, numbers, tuned, held_out, progress } = *request;
+    let ControllerRequest { model, numbers, tuned, held_out, framework, progress } = *request;
     if numbers == Numbers::Integer {
         check_spikes(&model.net)?;
     }
-    let original = model.original(tuned);
+    let mut original = model.original(tuned);
+    let mut reading = Reading::default();
+    if let Some(framework) = framework {
+        framework.check(&model.outputs(), tuned.len())?;
+        reading = Reading::of(&original, framework, 0);
+        original.replace_outputs(framework);
+    }
     let mut notes = model.notes.clone();
     notes.extend(model.net.rules());
     let held = match numbers {
@@ -219,7 +237,8 @@ pub fn bring_to_controller(request: &ControllerRequest) -> Result<Brought> {
         .map(|all| figures(&model.original(all.steps), &*network, all.steps, all.from))
         .transpose()?;
     let tuned = figures(&original, &*network, tuned, 0)?;
-    Ok(Brought { network, tuned, held_out, costs: vec![], reading: None, reading_error: None })
+    let Reading { share, error } = reading;
+    Ok(Brought { network, tuned, held_out, costs: vec![], reading: share, reading_error: error })
 }
 
 /// Chooses [`CHECKED`] consecutive steps for the self-test, and returns their inputs. The network starts from rest, and

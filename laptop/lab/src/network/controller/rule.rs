@@ -2,6 +2,7 @@
 
 use super::open::Choice;
 use crate::network::fault::{NetworkKind, Result};
+use catalogue::run::Spell;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
 
@@ -155,7 +156,7 @@ impl Framework {
     }
 
     /// Returns the parts of the rule for decay, firing and reset that this framework implies.
-    fn says(self) -> Asked {
+    pub(super) fn says(self) -> Asked {
         use {Current as C, Decay as D, Fires as F, Framework as W, Reset as R};
         let (reset, fires, decay, current, dt) = match self {
             W::SnnTorch => (None, Some(F::Above), D::Euler, Some(C::New), Some(WRITTEN)),
@@ -178,6 +179,46 @@ impl Framework {
 }
 
 impl Asked {
+    /// Returns the settings that give this rule, as the user writes them. The function `spell` converts the name of a
+    /// setting to the spelling that the user knows.
+    pub(in super::super) fn settings(&self, spell: Spell) -> String {
+        let mut settings = Vec::new();
+        if let Some(framework) = self.framework {
+            settings.push(format!("{} {}", spell("as"), framework.name()));
+        }
+        if !self.resets.is_empty() {
+            let resets: Vec<_> = self.resets.iter().map(|reset| reset.name()).collect();
+            settings.push(format!("{} {}", spell("reset"), resets.join(",")));
+        }
+        if let Some(fires) = self.fires {
+            let fires = if fires == Fires::At { "at" } else { "above" };
+            settings.push(format!("{} {fires}", spell("fires")));
+        }
+        let says = self.framework.map(Framework::says).unwrap_or_default();
+        if let Some(decay) = self.decay
+            && says.decay != self.decay
+        {
+            let decay = if decay == Decay::Euler { "euler" } else { "exponential" };
+            settings.push(format!("{} {decay}", spell("decay")));
+        }
+        if let Some(current) = self.current
+            && says.current != self.current
+        {
+            let current = match current {
+                Current::New => "new",
+                Current::Old => "old",
+                Current::Whole => "whole",
+            };
+            settings.push(format!("{} {current}", spell("current")));
+        }
+        if let Some(dt) = self.dt
+            && says.dt != self.dt
+        {
+            settings.push(format!("{} {dt}", spell("dt")));
+        }
+        settings.join(" ")
+    }
+
     /// Returns the complete rule, from the parts that the user gave and those that the framework implies.
     ///
     /// # Errors
@@ -245,6 +286,19 @@ impl Asked {
 }
 
 impl Reset {
+    /// Returns the name by which the user selects the reset.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ToValue => "to-value",
+            Self::ToValueLate => "to-value-late",
+            Self::ToValueHeld => "to-value-held",
+            Self::Subtract => "subtract",
+            Self::SubtractLate => "subtract-late",
+            Self::SubtractNoDelay => "subtract-no-delay",
+            Self::NoReset => "none",
+        }
+    }
+
     /// Returns the name of the type in `spikewire-network` that resets in this way.
     pub(super) const fn type_name(self) -> &'static str {
         match self {
