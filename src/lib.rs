@@ -125,4 +125,19 @@ pub mod pages {
     pub struct Readme;
     #[doc = include_str!("../docs/usage.md")]
     pub struct Usage;
+    #[doc = include_str!("../docs/how-to/own-sensor.md")]
+    pub struct OwnSensor;
+    #[doc = include_str!("../docs/how-to/two-schemes.md")]
+    pub struct TwoSchemes;
+    #[doc = include_str!("../docs/how-to/fifo.md")]
+    pub struct Fifo;
+    #[doc = include_str!("../docs/how-to/log-to-sd.md")]
+    pub struct LogToSd;
+    #[doc = include_str!("../docs/how-to/mavlink.md")]
+    pub struct Mavlink;
+    #[doc = include_str!("../docs/how-to/pid-loop.md")]
+    pub struct PidLoop;
+    #[cfg(feature = "async")]
+    #[doc = include_str!("../docs/how-to/async.md")]
+    pub struct Async;
 }

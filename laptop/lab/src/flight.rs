@@ -4,7 +4,7 @@
 use crate::Result;
 use crate::coding::Coding;
 use crate::events::{Item, LinkTally, Values};
-use crate::input::{Chunk, InputOptions, Source};
+use crate::input::{Chunk, InputOptions, Source, is_other_rate};
 use crate::scheme::Scheme;
 use crate::tune::RequestKind;
 use crate::tune::report::Row;
@@ -128,6 +128,17 @@ pub(crate) fn period(rate: f64) -> Result<NonZeroU32> {
     period
         .and_then(NonZeroU32::new)
         .ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
+}
+
+/// Returns a note for the user if a recording has another rate than the flight, by a fifth or more.
+pub(crate) fn other_rate(flight: &Flight, rate: Option<f64>) -> Option<Words> {
+    let rate = rate.filter(|rate| is_other_rate(*rate, flight.rate()))?;
+    let what = "its filter and its times are those of other samples";
+    let words = format!(
+        "the recording has {rate:.2} samples a second, and the flight {:.2}: {what}",
+        flight.rate()
+    );
+    Some(words.into())
 }
 
 /// Returns a copy of `options` that chooses the sources of the flight's channels: columns of a table, or topic and fields

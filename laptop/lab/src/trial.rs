@@ -145,6 +145,12 @@ impl Recording {
         self.rejected
     }
 
+    /// Returns the longest step in µs that is no gap, if the recording has times that go forward.
+    pub(crate) fn longest_step(&self) -> Option<f64> {
+        let longest = self.clock.longest_step();
+        (self.times.len() > 1 && longest > 0.0).then_some(longest)
+    }
+
     /// Returns the two rates of a recording whose times contradict themselves.
     pub fn uneven(&self) -> Option<UnevenRate> {
         self.clock.uneven()

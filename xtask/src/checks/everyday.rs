@@ -44,7 +44,7 @@ pub fn test() -> Result<()> {
 pub fn readme() -> Result<()> {
     let said = output(&mut tests("--doc -- pages")?)?;
     print!("{said}");
-    for page in ["Readme", "Usage", "Frames"] {
+    for page in ["Readme", "Usage", "Frames", "Async", "TinyOdin"] {
         ensure!(
             said.contains(&format!(" - pages::{page} (line ")),
             "no doctest of `pages::{page}`: is the page included in a lib.rs?"

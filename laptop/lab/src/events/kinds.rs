@@ -26,6 +26,10 @@ kinds! {
             ("the header says EVT {version}, which the format `{name}` reads"),
         ByteOrder { order: String } =>
             ("the header says `endianness={order}`, where `little` and `legacy` are read"),
+        WhichByteOrder => (
+            "the header does not say the order of the bytes, and the words do not show it: `evt21,legacy=0` (GenX320) \
+             or `evt21,legacy=1` (IMX636) says it"
+        ),
         FarRows { events: u64 } => (
             "events without an address, in rows from 32 on: {events}; `evt2,pixels=1` reads columns and rows"
         ),

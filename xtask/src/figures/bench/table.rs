@@ -19,7 +19,6 @@ const EVENTS: (&str, &str) = ("docs/costs.md", "bench-target events");
 const SLOWER: (&str, &str) = ("docs/costs.md", "bench-target slower");
 const STACK: (&str, &str) = ("docs/costs.md", "bench-target stack");
 const BRIEF: (&str, &str) = ("README.md", "bench-target brief");
-const SIX: (&str, &str) = ("README.md", "bench-target six channels");
 
 /// Files with every figure, of which the page shows a few.
 const CODECS_CSV: &str = "docs/costs.csv";
@@ -145,7 +144,6 @@ fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<((&str, &str),
         tables.insert(0, (CODECS, codecs(rows)));
         tables.push((SLOWER, slower::markdown(rows)));
         tables.push((BRIEF, brief(rows, &markdown::section(BRIEF.0, BRIEF.1)?)));
-        tables.push((SIX, format!("\n{}\n", events::in_a_sentence(events)?)));
     }
     Ok(tables)
 }
