@@ -10,7 +10,7 @@ use lab::bench::signal::{RATE, Waveform};
 use lab::input::messages::overview;
 use lab::input::{CHUNK, ChannelOptions, Clock, InputOptions};
 use lab::trial::Recording;
-use lab::unit::known_unit;
+use lab::unit::unit_of_name;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::cell::RefCell;
@@ -161,8 +161,8 @@ fn list(path: &Path, accept_cut: bool, table: &TableOptions) -> Result<Value> {
 /// A topic of a log, or the columns of a table. A field without a known unit has none.
 fn topic(name: &str, fields: &[String], count: u64, about: &str) -> Value {
     let unit = |field: &String| match name {
-        "" => known_unit(field),
-        topic => known_unit(&format!("{topic}.{field}")),
+        "" => unit_of_name(field),
+        topic => unit_of_name(&format!("{topic}.{field}")),
     };
     let units: Vec<_> = fields.iter().map(unit).collect();
     json!({ "name": name, "fields": fields, "units": units, "count": count, "about": about })

@@ -126,6 +126,8 @@ export const steps = {
       const page = await opened({ ...options, colorScheme, isFolded: true }, ""), what = `${size}, ${colorScheme}`;
       assert.equal(await page.evaluate(() => matchMedia("(prefers-color-scheme: dark)").matches), colorScheme === "dark");
       const looked = async (at) => {
+        // A line that the edge of a list cuts has no contrast that axe can decide.
+        await page.evaluate(() => (document.getElementById("settings").scrollTop = 1e6));
         await apart(page, `${what}, ${at}`);
         await accessible(page, `${what}, ${at}`);
         const wide = await page.evaluate(() => document.documentElement.scrollWidth);
