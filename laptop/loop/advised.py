@@ -38,7 +38,8 @@ def advised(spikewire: str, log: Path) -> Bank:
     shared = own.get("parameters", {})
     taken = {channel["name"]: shared | channel.get("parameters", {}) for channel in own["channel"]}
     groups = tuple(taken[name] for name in CHANNELS)
-    return Bank(own["scheme"], filter_ and filter_["corner"], round(own["keyframe_every"] * own["period"] / 1000), groups)
+    keyframe_ms = round(own["keyframe_every"] * own["period"] / 1000)
+    return Bank(own["scheme"], filter_ and filter_["corner"], keyframe_ms, groups, own.get("step-bits", own.get("step_bits", 0)))
 
 
 def main(spikewire: str) -> None:

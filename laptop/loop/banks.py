@@ -50,13 +50,14 @@ FLOWN = 50
 
 @dataclass(frozen=True)
 class Bank:
-    """A code as it flies: the corner of a low-pass before it, Hz, its keyframes, and the parameters of each group, or of
-    each channel."""
+    """A code as it flies: the corner of a low-pass before it, Hz, its keyframes, the parameters of each group, or of
+    each channel, and the bits of a step number that an event carries on the link."""
 
     name: str
     low_pass: float | None
     keyframe_ms: int
     groups: tuple[dict, ...]
+    step_bits: int = 0
 
     def schemes(self) -> list[sw.Scheme]:
         """The scheme of each channel."""
@@ -70,7 +71,12 @@ class Bank:
 
     def path(self, rate: int) -> Coded:
         """The way of samples by it."""
-        return Coded(self.schemes(), max(1, self.keyframe_ms * rate // 1000), self.low_pass, rate)
+        keyframe_every = max(1, self.keyframe_ms * rate // 1000)
+        return Coded(self.schemes(), keyframe_every, self.corner(rate), rate, self.step_bits)
+
+    def corner(self, rate: int) -> float | None:
+        """The low-pass's corner at this rate: none where the rate is too low for it."""
+        return self.low_pass if self.low_pass and self.low_pass < rate / 2 else None
 
     def scaled(self, group: int, factor: float) -> Bank:
         """With thresholds or a range of other size."""
@@ -96,7 +102,11 @@ class Bank:
 def banks(path: Path = KEPT_BANKS) -> dict[str, Bank]:
     """All that were found."""
     kept = json.loads(path.read_text()) if path.exists() else {}
-    return {name: Bank(name.split("/")[0], own["low_pass"], own["keyframe_ms"], tuple(own["groups"])) for name, own in kept.items()}
+    found = {}
+    for name, own in kept.items():
+        groups = tuple(own["groups"])
+        found[name] = Bank(name.split("/")[0], own["low_pass"], own["keyframe_ms"], groups, own.get("step_bits", 0))
+    return found
 
 
 def written(kept: dict[str, Bank]) -> str:
@@ -105,6 +115,8 @@ def written(kept: dict[str, Bank]) -> str:
     for name, bank in kept.items():
         own = asdict(bank)
         own.pop("name")
+        if not bank.step_bits:
+            own.pop("step_bits")
         lines.append(f'  "{name}": {json.dumps(own)}')
     return "{\n" + ",\n".join(lines) + "\n}\n"
 

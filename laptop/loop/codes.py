@@ -82,10 +82,11 @@ class Coded(Way):
         keyframe_every: int = KEYFRAME_EVERY,
         low_pass: float | None = None,
         rate: int = RATE,
+        step_bits: int = 0,
     ):
         self.period = 1_000_000 // rate
         before = low_pass and sw.Filter.low_pass(low_pass, rate)
-        self.sender = sw.Sender(schemes, self.period, keyframe_every, filter=before)
+        self.sender = sw.Sender(schemes, self.period, keyframe_every, filter=before, step_bits=step_bits)
         self.receiver = sw.Receiver(schemes, self.period, clock_tolerance=0, filter=before)
         self.samples = self.whole = 0
 

@@ -65,7 +65,6 @@ def cell(make, where=HERE, loss: float = LOSS, level: float = LEVEL, seeds: tupl
         "flights": len(flown),
         "error": float(np.mean(errors)) if errors else None,
         "spikes": float(np.mean([own.spikes for own in flown])),
-        "bytes": float(np.mean([own.bytes for own in flown])),
     }
 
 
@@ -124,7 +123,7 @@ def verdict(own: dict, control: dict) -> str:
     if not lost and not own["here"]["lost"]:
         return "**yes**" if far(own, control) <= WITHIN else "loosely"
     if not own["here"]["lost"] and all("Betaflight" in where for where in lost):
-        return "not on Betaflight's loop"
+        return "not: Betaflight"
     return f"not in {len(lost)} of {len(cells)}" if len(lost) < len(cells) else "**no**"
 
 
@@ -139,18 +138,13 @@ def number(value: float | None, digits: int = 0) -> str:
     return "–" if value is None else f"{value:,.{digits}f}".replace(",", " ")
 
 
-def share(own: dict) -> str:
-    """The share of flights lost, in percent."""
-    return number(100 * len(own["lost"]) / own["flights"])
-
-
 FLOWN = """\
-| code | flies? | low-pass, Hz | keyframes, ms | error, ° | lost, % | spikes/s | bytes/s | saved, % | everywhere: beside none | lost, % | 10 % of frames: error, ° | lost, % | still: bytes/s | late by, ms | instructions |
-|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|
+| code | 4 s | low-pass, Hz | keyframes, ms | error, ° | spikes/s | everywhere: beside none | lost, % |
+|---|---|---:|---:|---:|---:|---:|---:|
 """
 FILTERED = """\
-| code | still: error, lost | bytes/s | vibration: error, lost | bytes/s | behind 80 Hz: error, lost | bytes/s | behind 40 Hz: error, lost | bytes/s |
-|---|---:|---:|---:|---:|---:|---:|---:|---:|
+| code | error, °, and lost: still | vibration | behind 80 Hz | behind 40 Hz | spikes/s: vibration | behind 80 Hz | behind 40 Hz |
+|---|---:|---:|---:|---:|---:|---:|---:|
 """
 
 
@@ -162,8 +156,8 @@ WHICH = {
 }
 
 THIRD = """\
-| code | flies? RotorPy | MuJoCo | error, °: RotorPy | MuJoCo | bytes/s: RotorPy | MuJoCo | lost: RotorPy | MuJoCo | ratios of error | of bytes |
-|---|---|---|---:|---:|---:|---:|---:|---:|---:|---:|
+| code | 4 s | error, °: RotorPy | MuJoCo | lost: RotorPy | MuJoCo | ratios of error |
+|---|---|---:|---:|---:|---:|---:|
 """
 
 
@@ -175,51 +169,42 @@ def label(name: str) -> str:
 
 def flown_row(name: str, own: dict, control: dict) -> tuple:
     """A row of the first table, and what rows are sorted by."""
-    here, tenth, still = own["here"], own["every tenth frame lost"], own["still"]
-    everywhere = own["everywhere"].values()
+    here, everywhere = own["here"], own["everywhere"].values()
     lost = sum(len(cell["lost"]) for cell in everywhere) / sum(cell["flights"] for cell in everywhere)
     is_code = name != CONTROL
-    beside = far(own, control) if any(cell["error"] is not None for cell in everywhere) else None
-    late = own["filter_delay_ms"] + 2 * own["latency_samples"] if is_code else 0.0
     columns = [
         label(name),
         verdict(own, control),
         number(own["low_pass"]) if is_code else "–",
         number(own["keyframe_ms"]) if is_code else "–",
         number(here["error"], 1),
-        share(here),
-        number(here["spikes"]),
-        number(here["bytes"]),
-        number(100 * (1 - here["bytes"] / control["here"]["bytes"])) if is_code else "–",
-        number(beside, 2),
+        number(here["spikes"]) if is_code else "–",
+        number(far(own, control), 2) if any(cell["error"] is not None for cell in everywhere) else "–",
         number(100 * lost, 1),
-        number(tenth["error"], 1),
-        share(tenth),
-        number(still["bytes"]),
-        number(late, 1),
-        number(own["instructions"]) if is_code else "0",
     ]
-    return (is_code, lost > 0, lost, here["bytes"]), "| " + " | ".join(columns) + " |\n"
+    return (is_code, lost > 0, lost, here["spikes"]), "| " + " | ".join(columns) + " |\n"
 
 
 def filtered_row(name: str, own: dict) -> str:
     """A row of the second table."""
     columns = [label(name)]
-    for way in ("still", "none", "80", "40"):
-        columns += [f"{number(own[way]['error'], 1)}, {len(own[way]['lost'])}", number(own[way]["bytes"])]
+    columns += [f"{number(own[way]['error'], 1)}, {len(own[way]['lost'])}" for way in ("still", "none", "80", "40")]
+    columns += [number(own[way]["spikes"]) if name != CONTROL else "–" for way in ("none", "80", "40")]
     return "| " + " | ".join(columns) + " |\n"
 
 
+def is_held(own: dict | None) -> bool:
+    """Whether a code loses no flight behind one of the filters."""
+    return own is not None and not all(own[corner]["lost"] for corner in ("80", "40"))
+
+
 def third_row(name: str, own: dict, flown: dict, thirds: dict) -> str:
-    """A row of the third table: RotorPy's flights beside MuJoCo's."""
+    """A row of the third table: the verdict with MuJoCo's flights, and RotorPy's flights beside MuJoCo's."""
     theirs = in_rotorpy(flown[name])
-    columns = [label(name), *verdicts(name, own, flown, thirds)]
-    for figure, digits in (("error", 1), ("bytes", 0)):
-        columns += [number(theirs["here"][figure], digits), number(own["here"][figure], digits)]
-    columns += [crashes(theirs), crashes(own)]
-    for figure in ("error", "bytes"):
-        ratios = compared(theirs, own, figure)
-        columns.append(f"{min(ratios):.2f}–{max(ratios):.2f}" if ratios else "–")
+    columns = [label(name), verdicts(name, own, flown, thirds)[1]]
+    columns += [number(theirs["here"]["error"], 1), number(own["here"]["error"], 1), crashes(theirs), crashes(own)]
+    ratios = compared(theirs, own, "error")
+    columns.append(f"{min(ratios):.2f}–{max(ratios):.2f}" if ratios else "–")
     return "| " + " | ".join(columns) + " |\n"
 
 
@@ -250,7 +235,8 @@ def compared(one: dict, other: dict, figure: str) -> list[float]:
     """The ratio of a figure in the other world to that in the one, in each setting in which neither lost a flight."""
     cells = [(one["here"], other["here"])]
     cells += [(cell, other["everywhere"][where]) for where, cell in one["everywhere"].items()]
-    return [theirs[figure] / own[figure] for own, theirs in cells if not own["lost"] and not theirs["lost"]]
+    pairs = [(own[figure], theirs[figure]) for own, theirs in cells if not own["lost"] and not theirs["lost"]]
+    return [one / other for other, one in pairs if other]
 
 
 def rounded(own):
@@ -274,7 +260,7 @@ def printed(kept: dict) -> str:
     control = kept["banks"][CONTROL]
     rows = sorted((*flown_row(name, own, control), name) for name, own in kept["banks"].items())
     order = [CONTROL, *sw.schemes]
-    others = [filtered_row(name, kept["filters"][name]) for name in order if name in kept["filters"]]
+    others = [filtered_row(name, kept["filters"][name]) for name in order if is_held(kept["filters"].get(name))]
     thirds = [third_row(name, kept["third"][name], kept["banks"], kept["third"]) for *_, name in rows if name in kept["third"]]
     tables = (FLOWN, [text for _, text, _ in rows]), (FILTERED, others), (THIRD, thirds)
     return "\n".join(head + "".join(rows) for head, rows in tables)

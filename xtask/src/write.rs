@@ -20,7 +20,7 @@ const fn part(name: &'static str, files: &'static str, write: fn() -> Result<()>
 }
 
 /// The parts: those from the catalogue first, then those that are measured or drawn.
-const PARTS: [Part; 20] = [
+const PARTS: [Part; 21] = [
     part("interface", "interface.txt of each published crate", interface::write),
     part("c", "bindings/c/src/codecs.rs, bindings/c/src/sizes.rs", c_library::write),
     part("python", "bindings/python/spikewire/_schemes.pyi", python_package::write_stub),
@@ -29,30 +29,39 @@ const PARTS: [Part; 20] = [
     part("flight", "docs/flight.svg", demo::write),
     part(
         "loop",
-        "docs/loop.md: its tables, docs/loop.svg and docs/crash.svg; some 40 minutes",
+        "docs/loop.md: its tables, docs/loop.svg and docs/crash.svg; well over an hour",
         simulated_drone::write,
     ),
     part(
+        "advised",
+        "docs/loop.md: the flights of the banks that `advise` takes",
+        simulated_drone::write_advised,
+    ),
+    part(
         "verdicts",
-        "docs/loop.md: its tables from laptop/loop/verdicts.json",
+        "docs/loop.md: its tables from laptop/loop/verdicts.json and minutes.json",
         simulated_drone::write_tables,
     ),
     part(
         "chip",
-        "docs/loop.md: the chip's flights, and docs/chip.svg",
+        "docs/flown-networks.md: the chip's flights, and docs/chip.svg",
         simulated_drone::write_chip,
     ),
     part("chips", "docs/chips.md: how well networks agree on the chips", chips::write),
-    part("network-flies", "docs/loop.md: the network's flights", network_flies::write),
+    part("network-flies", "docs/flown-networks.md: the network's flights", network_flies::write),
     part("frames", "docs/frames.png", video::write),
     part("page", "docs/page.png", page::write),
     part("ros", "docs/ros.svg", ros::write),
-    part("bits", "docs/bits.md: the table", firmware::write),
-    part("c-sizes", "bindings/c/README.md: the table of sizes", c_library::write_sizes),
-    part("costs", "docs/costs.md, README.md: the tables of costs", bench::write),
-    part("faults", "SAFETY.md: the table of faults", faults::write),
+    part("bits", "docs/bits.csv", firmware::write),
+    part(
+        "c-sizes",
+        "bindings/c/sizes.csv, bindings/c/README.md: the sizes",
+        c_library::write_sizes,
+    ),
+    part("costs", "docs/costs*.csv, docs/costs.md, README.md: the costs", bench::write),
+    part("faults", "docs/faults.csv, SAFETY.md: the faults", faults::write),
     part("flash", "docs/costs.md: the table of flash", flash::write),
-    part("stack", "docs/costs.md: the tables of stacks", bench::write_stack),
+    part("stack", "docs/costs-stack.csv, docs/costs.md: the stacks", bench::write_stack),
 ];
 
 /// Writes the named parts, or all.

@@ -5,7 +5,7 @@ use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind, UnevenRat
 use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
 use crate::slope::Slope;
-use crate::unit::known_unit;
+use crate::unit::unit_of_name;
 use crate::{Result, Spot};
 use catalogue::run::{Asked, Calibrated, Event, SampleType, Settings, Shape, Words};
 use std::ops::Range;
@@ -167,7 +167,7 @@ impl Recording {
 
     /// Returns the unit of the samples, if the log gives it or the channel's name shows it.
     pub fn unit(&self) -> Option<&str> {
-        self.unit.as_deref().or_else(|| known_unit(&self.name))
+        self.unit.as_deref().or_else(|| unit_of_name(&self.name))
     }
 
     /// Returns the duration in seconds, if it is known. The unknown time between segments is left out.

@@ -9,17 +9,17 @@ use crate::programs::{boards::Board, host};
 use anyhow::Result;
 use std::fs;
 
-const PAGE: &str = "docs/loop.md";
+const PAGE: &str = "docs/flown-networks.md";
 const MARKER: &str = "network";
 const EXPORT: &str = "network laptop/loop/network.nir --on controller --reset subtract --fires above --decay euler \
                       --current new --dt 0.002";
 
-/// Checks that the table of the network in docs/loop.md comes again from the committed graph.
+/// Checks that the table of the network in docs/flown-networks.md comes again from the committed graph.
 pub fn verify() -> Result<()> {
     markdown::ensure_written(PAGE, MARKER, &flown()?, "cargo xtask write network-flies")
 }
 
-/// Flies all manoeuvres, and writes the table into docs/loop.md.
+/// Flies all manoeuvres, and writes the table into docs/flown-networks.md.
 pub fn write() -> Result<()> {
     markdown::write(PAGE, MARKER, &flown()?)
 }

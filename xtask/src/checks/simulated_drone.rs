@@ -11,9 +11,27 @@ use std::{
 };
 
 const PAGE: &str = "docs/loop.md";
-/// The tables: each code's flights when it is tuned by flying, when it is tuned on its error behind other filters, and
-/// in a third world.
-const TABLES: [&str; 3] = ["loop", "filters", "third"];
+/// A table, and the page that has it.
+#[derive(Clone, Copy)]
+struct Table {
+    page: &'static str,
+    marker: &'static str,
+}
+
+const fn on_page(marker: &'static str) -> Table {
+    Table { page: PAGE, marker }
+}
+
+/// The tables of `minutes.py`: what is sent beside its rivals, flights of a minute, and bad lines.
+const MINUTES: [Table; 3] = [on_page("rivals"), on_page("minutes"), on_page("lines")];
+/// The tables of `table.py`: each code's flights when it is tuned by flying, when it is tuned on its error behind other
+/// filters, and in a third world.
+const TABLES: [Table; 3] =
+    [on_page("loop"), on_page("filters"), Table { page: WORLDS, marker: "third" }];
+/// The page of the simulated worlds.
+const WORLDS: &str = "docs/simulation.md";
+/// The page of the networks that fly, and its table of a chip's flights.
+const NETWORKS: &str = "docs/flown-networks.md";
 const CHIP: &str = "chip";
 const PICTURE: &str = "docs/loop.svg";
 const CRASH: &str = "docs/crash.svg";
@@ -23,6 +41,8 @@ const ADVISED: &str = "laptop/loop/advised.json";
 
 /// The row of two tables that a check flies again.
 const AGAIN: &str = "sod";
+/// The way that a check flies again, in one condition.
+const WAY: &str = "sod/numbered";
 
 /// Flies a flip on the spikes of a code, and draws it.
 pub fn fly(args: &[String]) -> Result<()> {
@@ -42,12 +62,25 @@ pub fn write() -> Result<()> {
     drawing::keep(&draw(&python, "picture.py")?, PICTURE)?;
     drawing::keep(&draw(&python, "crash.py")?, CRASH)?;
     fs::write(paths::root().join(ADVISED), advised(&python)?)?;
-    put(&output(&mut program(&python, "table.py"))?)
+    put(MINUTES, &output(program(&python, "minutes.py").arg("--anew"))?)?;
+    put(TABLES, &output(&mut program(&python, "table.py"))?)
 }
 
-/// Writes the tables of the flights stored in `laptop/loop/verdicts.json` into docs/loop.md, without flying.
+/// Flies the banks that `advise` takes anew, and writes the tables into docs/loop.md.
+pub fn write_advised() -> Result<()> {
+    let python = environment()?;
+    let banks = advised(&python)?;
+    fs::write(paths::root().join(ADVISED), &banks)?;
+    let names = banks.lines().filter_map(|line| line.split('"').nth(1));
+    put(TABLES, &output(program(&python, "table.py").args(names))?)
+}
+
+/// Writes the tables of the flights stored in `laptop/loop/verdicts.json` and `minutes.json` into docs/loop.md, without
+/// flying.
 pub fn write_tables() -> Result<()> {
-    put(&output(program(&environment()?, "table.py").arg("--print"))?)
+    let python = environment()?;
+    put(MINUTES, &output(program(&python, "minutes.py").arg("--print"))?)?;
+    put(TABLES, &output(program(&python, "table.py").arg("--print"))?)
 }
 
 /// Asks `spikewire advise` for banks.
@@ -55,14 +88,17 @@ fn advised(python: &Path) -> Result<String> {
     output(program(python, "advised.py").arg(host::laptop()?))
 }
 
-fn put(printed: &str) -> Result<()> {
-    tables(printed).try_for_each(|(marker, table)| markdown::write(PAGE, marker, &table))
+fn put(places: [Table; 3], printed: &str) -> Result<()> {
+    for (place, table) in tables(places, printed) {
+        markdown::write(place.page, place.marker, &table)?;
+    }
+    Ok(())
 }
 
-/// Splits the output into tables at empty lines, each with its place in the page.
-fn tables(printed: &str) -> impl Iterator<Item = (&'static str, String)> {
+/// Splits the output into tables at empty lines, each with its place.
+fn tables(places: [Table; 3], printed: &str) -> impl Iterator<Item = (Table, String)> {
     let each = printed.split("\n\n").map(|table| format!("\n{}\n\n", table.trim_end()));
-    TABLES.into_iter().zip(each)
+    places.into_iter().zip(each)
 }
 
 /// Checks that control is stable, that links carry what codecs make, and that the same seeds give the page's picture
@@ -73,22 +109,30 @@ pub fn verify() -> Result<()> {
     run(&mut program(&python, "steps.py"))?;
     drawing::ensure_kept(&draw(&python, "picture.py")?, PICTURE, "cargo xtask write loop")?;
     drawing::ensure_kept(&draw(&python, "crash.py")?, CRASH, "cargo xtask write loop")?;
-    let printed = output(program(&python, "table.py").arg("--print"))?;
-    for (marker, table) in tables(&printed) {
-        markdown::ensure_written(PAGE, marker, &table, "cargo xtask write verdicts")?;
+    for (name, places) in [("minutes.py", MINUTES), ("table.py", TABLES)] {
+        let printed = output(program(&python, name).arg("--print"))?;
+        for (place, table) in tables(places, &printed) {
+            markdown::ensure_written(
+                place.page,
+                place.marker,
+                &table,
+                "cargo xtask write verdicts",
+            )?;
+        }
     }
+    run(program(&python, "minutes.py").args(["--check", WAY]))?;
     ensure!(
         advised(&python)? == fs::read_to_string(paths::root().join(ADVISED))?,
-        "`advise` takes other banks than {ADVISED} has; `cargo xtask write loop` flies them"
+        "`advise` takes other banks than {ADVISED} has; `cargo xtask write advised` flies them"
     );
-    let page = fs::read_to_string(paths::root().join(PAGE))?;
-    for option in ["--filters", "--third"] {
+    for (option, name) in [("--filters", PAGE), ("--third", WORLDS)] {
+        let page = fs::read_to_string(paths::root().join(name))?;
         let table = output(program(&python, "table.py").args([option, AGAIN]))?;
         let row = table.lines().last().unwrap_or_default();
         println!("{row}");
         ensure!(
             page.lines().any(|line| line == row),
-            "{PAGE} has another row; `cargo xtask write loop` flies all"
+            "{name} has another row; `cargo xtask write loop` flies all"
         );
     }
     Ok(())
@@ -99,15 +143,15 @@ pub fn verify() -> Result<()> {
 pub fn chip() -> Result<()> {
     let (python, command) = (environment()?, "cargo xtask write chip");
     drawing::ensure_kept(&draw(&python, "chip_picture.py")?, CHIP_PICTURE, command)?;
-    markdown::ensure_written(PAGE, CHIP, &on_chip(&python)?, command)
+    markdown::ensure_written(NETWORKS, CHIP, &on_chip(&python)?, command)
 }
 
-/// Flies all manoeuvres with a network on the model of tinyODIN, writes the table into docs/loop.md, and draws the
-/// picture.
+/// Flies all manoeuvres with a network on the model of tinyODIN, writes the table into docs/flown-networks.md, and
+/// draws the picture.
 pub fn write_chip() -> Result<()> {
     let python = environment()?;
     drawing::keep(&draw(&python, "chip_picture.py")?, CHIP_PICTURE)?;
-    markdown::write(PAGE, CHIP, &on_chip(&python)?)
+    markdown::write(NETWORKS, CHIP, &on_chip(&python)?)
 }
 
 fn on_chip(python: &Path) -> Result<String> {

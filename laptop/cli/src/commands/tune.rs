@@ -20,7 +20,7 @@ use lab::trial::Recording;
 use lab::tune::report::{Cut, Row, print};
 use lab::tune::stretch::HoldOut;
 use lab::tune::{Goal, Limits, Over, Stretch, TuneRequest, Tuned, costs, emit, tune};
-use lab::unit::known_unit;
+use lab::unit::unit_of_name;
 use lab::watch::{Progress, Watch};
 use serde::Serialize;
 use serde_json::json;
@@ -356,7 +356,7 @@ impl Tune {
     }
 
     fn panel(cut: &Cut, curves: Vec<lab::tune::Curve>) -> Panel {
-        Panel { title: cut.name.clone(), unit: known_unit(&cut.name).map(str::to_owned), curves }
+        Panel { title: cut.name.clone(), unit: unit_of_name(&cut.name).map(str::to_owned), curves }
     }
 
     /// Prints a table of the tuned settings for each channel. The tables go to standard output, or to standard error if

@@ -138,10 +138,12 @@ impl FromStr for Format {
                 let channels = settings.number("channels", 8)?;
                 let period = settings.number("period", 1_000)?;
                 let jitter: u8 = settings.number("jitter", 0)?;
-                if period == 0 || jitter > 15 {
+                let step_bits: u8 = settings.number("step-bits", 0)?;
+                if !(1..1 << 24).contains(&period) || jitter > 15 || step_bits > 4 {
                     return Err(EventsKind::PeriodOrJitter { text: text.to_owned() }.into());
                 }
-                Self::Link(Coding::for_channels(channels, period).with_jitter_bits(jitter))
+                let coding = Coding::for_channels(channels, period);
+                Self::Link(coding.with_jitter_bits(jitter).with_step_bits(step_bits))
             }
             "edvs" => return Err(EventsKind::TimesOfEdvs.into()),
             "edvs:e0" => edvs(EdvsTime::None, &mut settings)?,
