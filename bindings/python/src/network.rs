@@ -199,7 +199,14 @@ impl Network {
         }
         let numbers = choice("numbers", numbers)?;
         let (model, progress) = (&self.model, &|_, _| {});
-        let request = ControllerRequest { model, numbers, tuned: steps, held_out: None, progress };
+        let request = ControllerRequest {
+            model,
+            numbers,
+            tuned: steps,
+            held_out: None,
+            framework: None,
+            progress,
+        };
         py.detach(|| asked(&*bring_to_controller(&request)?.network)).map_err(value)
     }
 

@@ -32,13 +32,21 @@ fn every_command_has_an_example_that_its_options_allow() {
 fn every_option_says_what_it_means() {
     for command in COMMANDS {
         let help = ran!("{command} -h").output;
-        let options = help.lines().map(str::trim_start).filter(|line| line.starts_with("--"));
-        for option in options {
-            let words = option.split_once("  ").map_or("", |(_, words)| words.trim());
+        let lines: Vec<&str> = help.lines().collect();
+        for (place, line) in lines.iter().enumerate() {
+            // Lines of a text that go on are indented further.
+            let Some(option) = line.strip_prefix("      ").filter(|own| own.starts_with("--"))
+            else {
+                continue;
+            };
+            let beside = option.split_once("  ").map_or("", |(_, words)| words.trim());
+            let below = lines.get(place + 1).map_or("", |line| line.trim());
+            let words = if beside.is_empty() { below } else { beside };
             assert!(words.len() > 8, "{command}: {option}");
         }
     }
     let encode = good("encode --help", "").output;
+    let encode = encode.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(encode.contains("in the signal's unit, such as `0.1`"), "{encode}");
 }
 
