@@ -71,6 +71,7 @@
 //! | `heapless` | `heapless::Vec`, `Deque`, `spsc` and `mpmc` as ends of queues, by way of `Counted` |
 //! | `portable-atomic` | `heapless::mpmc` on a Cortex-M0; needs a `critical-section` implementation in the program |
 //! | `link` | `link`: framed events over any byte transport |
+//! | `link-small` | the same with 960 bytes of tables less, and a checksum that takes twice as long |
 //! | `embedded-hal` | [`out`]: SPI |
 //! | `async` | [`out`]: asynchronous SPI; waiting on a queue |
 //! | `embedded-io` | [`out`]: UART and USB serial, over ports of `embedded-io` 0.7 |
@@ -124,4 +125,19 @@ pub mod pages {
     pub struct Readme;
     #[doc = include_str!("../docs/usage.md")]
     pub struct Usage;
+    #[doc = include_str!("../docs/how-to/own-sensor.md")]
+    pub struct OwnSensor;
+    #[doc = include_str!("../docs/how-to/two-schemes.md")]
+    pub struct TwoSchemes;
+    #[doc = include_str!("../docs/how-to/fifo.md")]
+    pub struct Fifo;
+    #[doc = include_str!("../docs/how-to/log-to-sd.md")]
+    pub struct LogToSd;
+    #[doc = include_str!("../docs/how-to/mavlink.md")]
+    pub struct Mavlink;
+    #[doc = include_str!("../docs/how-to/pid-loop.md")]
+    pub struct PidLoop;
+    #[cfg(feature = "async")]
+    #[doc = include_str!("../docs/how-to/async.md")]
+    pub struct Async;
 }

@@ -19,4 +19,6 @@ pub mod frame;
 pub mod pages {
     #[doc = include_str!("../../docs/frames.md")]
     pub struct Frames;
+    #[doc = include_str!("../../docs/how-to/event-camera.md")]
+    pub struct EventCamera;
 }

@@ -31,3 +31,16 @@ pub use reckon::{
 };
 pub use tinyodin::{TinyOdin, TinyOdinInput, TinyOdinNetwork, TinyOdinNeuron, TinyOdinRegisters};
 pub use xylo::{InputBank, Registers, Xylo, XyloMap, pack_counts};
+
+/// The code of the pages on chips, for doctests alone.
+#[cfg(doctest)]
+pub mod pages {
+    #[doc = include_str!("../../docs/how-to/chip-tinyodin.md")]
+    pub struct TinyOdin;
+    #[doc = include_str!("../../docs/how-to/chip-reckon.md")]
+    pub struct ReckOn;
+    #[doc = include_str!("../../docs/how-to/chip-akd1500.md")]
+    pub struct Akd1500;
+    #[doc = include_str!("../../docs/how-to/chip-xylo.md")]
+    pub struct Xylo;
+}

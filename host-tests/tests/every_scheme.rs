@@ -153,8 +153,8 @@ fn has_a_row_in_the_table_of_fingerprints() {
 fn is_counted_where_the_docs_count() {
     let count = INFO.len();
     assert!(
-        read("README.md").contains(&format!("lists all {count} codes")),
-        "README.md: there are {count} codes"
+        read("README.md").contains(&format!("lists all {count} schemes")),
+        "README.md: there are {count} schemes"
     );
     // Each code with six signals.
     let words = format!("With {count} codes that is {} problems", count * 6);

@@ -82,7 +82,7 @@ const FAULTS: [(Fault, &str, &str); 27] = [
     (Late, "frames", "a third of the frames overtaken by up to 20 later ones"),
     (FarLate, "frames", "a third of the frames overtaken by 300 later ones"),
     (Cut, "frames", "a third of the frames cut off"),
-    (CutThenIdle, "frames", "the same, and the reader is told when the line is idle"),
+    (CutThenIdle, "frames", "the same, with a report when the line is idle"),
     (Spliced, "frames", "two senders on one line, halves of their frames joined"),
     (Flipped1000, "bits", "bits flipped, 1 in 1000"),
     (Flipped100, "bits", "bits flipped, 1 in 100"),
@@ -964,7 +964,12 @@ fn check_noticed(faults: &[Fault], tally: &Tally) {
     match faults {
         [Lost] => assert_eq!(noticed("frames lost"), tally.injected),
         [Doubled] => assert_eq!(noticed("repeated"), tally.injected),
-        [Late] => assert_eq!(noticed("late"), noticed("frames lost"), "{:?}", tally.noticed),
+        // A short frame that is late by more than an eighth of its counts is not known as one.
+        [Late] => {
+            let (late, lost) = (noticed("late"), noticed("frames lost"));
+            assert!(late <= lost && late > lost - lost / 10, "{:?}", tally.noticed);
+            assert!(late == lost || noticed("bad checksums") > 0);
+        }
         [FarLate] => assert!(noticed("late") > 0),
         [SenderOut | SessionAgain | ReceiverOut | TickWrap | NumberWrap] => {
             assert!(noticed("starts") > 0);
@@ -985,13 +990,19 @@ fn check_noticed(faults: &[Fault], tally: &Tally) {
 
 #[test]
 fn whatever_goes_wrong_nothing_is_wrong_that_is_called_exact() {
+    let mut silent = Vec::new();
     for (number, (faults, ..)) in rows().iter().enumerate() {
         let is_float = number.is_multiple_of(2) || faults[..] == [NotFinite];
         let tally =
             if is_float { soak::<f32>(1.0, faults, 1) } else { soak::<i16>(1000.0, faults, 1) };
         check_noticed(faults, &tally);
-        assert!(tally.injected > 0 && tally.exact > 10_000);
+        // Of two senders on one line only full frames are read.
+        let least = if faults[..] == [Spliced] { 5_000 } else { 10_000 };
+        if tally.injected == 0 || tally.exact <= least {
+            silent.push((faults.clone(), tally.injected, tally.exact));
+        }
     }
+    assert!(silent.is_empty(), "without a fault or with few exact values: {silent:?}");
 }
 
 /// Prints the table of SAFETY.md, from flights of hours; see `cargo xtask write faults`.

@@ -108,7 +108,10 @@ fn errors_are_told_in_words() {
     for (error, message) in [
         (LinkError::Truncated { needed: 22, found: 7 }, "the frame has 22 bytes, but 7 are here"),
         (LinkError::NotAFrame { found: 9 }, "a frame does not begin with 0x09"),
-        (LinkError::Version { found: 2 }, "version 2 of the link is not known"),
+        (
+            LinkError::Version { found: 3 },
+            "the frame is one of version 3 of the link, this end reads version 4",
+        ),
         (
             LinkError::Checksum { found: 1, computed: 0xABC },
             "the frame's checksum is 0x00000001, but its bytes give 0x00000abc",
@@ -117,6 +120,29 @@ fn errors_are_told_in_words() {
     ] {
         assert_eq!(error.to_string(), message);
     }
+}
+
+/// The empty first frame of a session by version 3 of the link: magic, version and flags, number, time, period, coding,
+/// length, checksum.
+const VERSION_3: [u8; 22] = [
+    0xA5, 0x34, 0x15, 0x7C, 0x4A, 0x7F, 0xB9, 0x79, 0xE8, 0x03, 0, 0, 0, 0, 0xE8, 0x03, 0x00, 0,
+    0x85, 0xC1, 0xF6, 0x8B,
+];
+
+#[test]
+fn frames_of_version_3_are_refused_by_name() {
+    assert_eq!(FrameView::new(&VERSION_3).err(), Some(LinkError::Version { found: 3 }));
+    let mut reader = Reader::<MAX_FRAME>::new();
+    assert!(reader.next_frame(&mut VERSION_3.repeat(9).as_slice()).is_none());
+    assert_eq!(reader.other_version(), Some(3));
+
+    // A sender of this version takes its place.
+    let mut framer = Framer::new(Coding::for_channels(1, 1_000), Session::counted(1));
+    let mut buffer = [0; 64];
+    let mut bytes = framer.start(0.into(), &mut buffer).unwrap().finish();
+    while reader.next_after_silence().is_some() {}
+    assert!(reader.next_frame(&mut bytes).is_some());
+    assert_eq!((reader.other_version(), reader.frames()), (None, 1));
 }
 
 #[test]

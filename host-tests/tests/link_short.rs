@@ -815,6 +815,14 @@ fn what_must_not_wait_does_not() {
         assert_eq!(next(Some(first), 14_999), !waits);
         assert_eq!(next(None, 15_000), waits);
     }
+    // As after a clock that stepped back by the time that an event may wait.
+    for (now, waits) in [(0, true), (4_294_962_297, true), (4_294_962_296, false)] {
+        let mut link = Transmitter::new(coding, Session::counted(1)).with_gathering(10_000);
+        link.observe(Tick::from(now));
+        let items = FromItems([event].into_iter());
+        let mut buffer = [0; MAX_FRAME];
+        assert_eq!(link.next_frame(items, &mut buffer).unwrap().is_none(), waits, "{now}");
+    }
 }
 
 /// A frame begins where its buffer does, as a sink that knows its length alone takes for granted.

@@ -1,6 +1,6 @@
 //! The count of rejected samples, and whether a first sample has been seen.
 
-use super::Sample;
+use super::{Sample, to_f64};
 
 /// How many samples were rejected, up to 2³¹-1, and whether a first sample has been seen. Four bytes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -13,6 +13,11 @@ impl Tally {
 
     const PRIMED: u32 = 1;
     const ONE: u32 = 2;
+
+    /// A first sample seen and none rejected; `None` for a baseline that is not finite.
+    pub(crate) const fn of_baseline<S: Sample>(baseline: S) -> Option<Self> {
+        if to_f64(baseline).is_finite() { Some(Self(Self::PRIMED)) } else { None }
+    }
 
     #[inline]
     pub(crate) fn is_primed(self) -> bool {

@@ -15,9 +15,13 @@ impl<'a> Cursor<'a> {
         Self { bytes, written: 0, limit }
     }
 
-    /// Keeps the buffer free from `limit` on.
-    pub(crate) fn set_limit(&mut self, limit: usize) {
-        self.limit = limit.min(self.bytes.len());
+    /// Begins behind this many bytes, which are [replaced](Self::replace) later, and ends at this limit, or so many bytes
+    /// before the buffer does.
+    #[inline]
+    pub(crate) fn begin(&mut self, written: usize, limit: usize, left: usize) {
+        let most = self.bytes.len().saturating_sub(left);
+        self.limit = limit.min(most);
+        self.written = written.min(most);
     }
 
     /// How many bytes there is room for.
@@ -40,14 +44,27 @@ impl<'a> Cursor<'a> {
         Some(())
     }
 
+    /// Appends so many of these bytes, for which there is room; the others are written behind them, and not appended. One
+    /// store for all takes less than one for each.
+    #[inline]
+    pub(crate) fn put_some(&mut self, source: [u8; 4], count: usize) {
+        let rest = self.bytes.get_mut(self.written..).unwrap_or_default();
+        if let Some(slot) = rest.first_chunk_mut() {
+            *slot = source;
+            self.written = self.written.wrapping_add(count);
+        }
+    }
+
     /// The bytes written.
     pub(crate) fn as_slice(&self) -> &[u8] {
         self.bytes.get(..self.written).unwrap_or_default()
     }
 
-    /// The bytes written, for the lifetime of the buffer.
-    pub(crate) fn into_slice(self) -> &'a [u8] {
-        self.bytes.get(..self.written).unwrap_or_default()
+    /// Takes the bytes written, for the lifetime of the buffer, and leaves none. (To consume the cursor instead would copy
+    /// whatever it is a part of.)
+    pub(crate) fn take(&mut self) -> &'a [u8] {
+        let bytes: &'a mut [u8] = core::mem::take(&mut self.bytes);
+        bytes.get(..self.written).unwrap_or_default()
     }
 
     /// Inserts a byte before one that is written, beyond the limit if need be; nothing if the buffer is full.

@@ -23,7 +23,7 @@ use anyhow::Result;
 use checks::{emulate, firmware, network, simulated_drone};
 use common::{Usage, progress, usage};
 use figures::{bench, demo};
-use products::{c_library, new_firmware, new_scheme, page};
+use products::{book, c_library, new_firmware, new_scheme, page};
 use std::{env, process::ExitCode};
 
 const USAGE: &str = "\
@@ -45,6 +45,7 @@ cargo xtask <command>
   scheme NAME TYPE --like NAME
                         a scheme to begin from: a copy of one that there is under another name, and the lines that list it
   page [--serve]        a page to look at signals and their spikes, as one HTML file; serves it on this machine alone
+  book                  the pages of this repository as a web site with search; installs MkDocs from PyPI
   network NETWORK.rs SPIKES.txt
                         a network that `spikewire network` wrote, on an emulated STM32F405 and RP2040 and on the host
   loop [CODE]           flies a simulated drone on spikes and draws it; installs RotorPy from PyPI, 1.2 GB
@@ -84,6 +85,7 @@ fn run(command: &str, args: &[String]) -> Result<()> {
         "emulate" => emulate::emulate(args),
         "new-firmware" => new_firmware::new_firmware(args),
         "page" => page::page(args),
+        "book" => book::build().map(drop),
         "demo" => demo::demo(args),
         "network" => network::network(args),
         "loop" => simulated_drone::fly(args),

@@ -2,7 +2,7 @@
 
 use crate::checks::package;
 use crate::common::{cargo, command, output, paths, run};
-use crate::products::{c_library, page};
+use crate::products::{book, c_library, page};
 use crate::programs::published::{self, CRATES};
 use crate::programs::python;
 use anyhow::{Context, Result, bail, ensure};
@@ -30,7 +30,7 @@ pub fn release() -> Result<()> {
     let materials = bill_of_materials(&version)?;
     println!("\n{} tells what the crate is built of.", materials.display());
     python_package()?;
-    let attached = [c_library::bundle()?, page::build()?, materials];
+    let attached = [c_library::bundle()?, page::build()?, book::pack()?, materials];
 
     let mut left = Vec::new();
     if !heading.contains(" - ") {

@@ -52,12 +52,16 @@ const PARTS: [Part; 21] = [
     part("frames", "docs/frames.png", video::write),
     part("page", "docs/page.png", page::write),
     part("ros", "docs/ros.svg", ros::write),
-    part("bits", "docs/bits.md: the table", firmware::write),
-    part("c-sizes", "bindings/c/README.md: the table of sizes", c_library::write_sizes),
-    part("costs", "docs/costs.md, README.md: the tables of costs", bench::write),
-    part("faults", "SAFETY.md: the table of faults", faults::write),
+    part("bits", "docs/bits.csv", firmware::write),
+    part(
+        "c-sizes",
+        "bindings/c/sizes.csv, bindings/c/README.md: the sizes",
+        c_library::write_sizes,
+    ),
+    part("costs", "docs/costs*.csv, docs/costs.md, README.md: the costs", bench::write),
+    part("faults", "docs/faults.csv, SAFETY.md: the faults", faults::write),
     part("flash", "docs/costs.md: the table of flash", flash::write),
-    part("stack", "docs/costs.md: the tables of stacks", bench::write_stack),
+    part("stack", "docs/costs-stack.csv, docs/costs.md: the stacks", bench::write_stack),
 ];
 
 /// Writes the named parts, or all.

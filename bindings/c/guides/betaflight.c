@@ -1,12 +1,14 @@
 /* A Betaflight task: spikes of the three turn rates out of a UART.
  *
- * Put this file into src/main/telemetry/spikes.c and into the list of sources, add TASK_SPIKES to scheduler.h, and to
- * fc/tasks.c
+ * `spikewire emit c --flight betaflight.toml -o spikes` makes both ends of betaflight.toml beside this file, as the library's
+ * README shows: a header, betaflight.h, and an archive for the board's core, which is linked. Put this file into
+ * src/main/telemetry/spikes.c and into the list of sources, add TASK_SPIKES to scheduler.h, and to fc/tasks.c
  *
  *     [TASK_SPIKES] = DEFINE_TASK("SPIKES", NULL, NULL, taskSpikes, TASK_PERIOD_HZ(1000), TASK_PRIORITY_MEDIUM),
  *
- * and in tasksInit: `setTaskEnabled(TASK_SPIKES, spikesInit());`. Link lib/libspikewire.a of the board's core. The UART
- * must be free of any other function; FUNCTION_SPIKES is the first of Betaflight's bits that stands for none.
+ * and in tasksInit: `setTaskEnabled(TASK_SPIKES, spikesInit());`. The UART must be free of any other function;
+ * FUNCTION_SPIKES is the first of Betaflight's bits that stands for none. `spikewire listen --flight betaflight.toml` reads what
+ * arrives.
  */
 #include <string.h>
 #include "platform.h"
@@ -16,19 +18,15 @@
 #include "scheduler/scheduler.h"
 #include "sensors/gyro.h"
 
-#include "spikewire/step_forward.h"
+#include "betaflight.h"
 
-#define CHANNELS 3u
-#define PERIOD_US 1000u
-#define KEYFRAMES_A_SECOND 20u /* after a loss, values are exact again within 50 ms */
-#define THRESHOLD 5.0f /* degrees a second */
+#define CHANNELS SW_BETAFLIGHT_CHANNELS
 #define SPIKES_PORT SERIAL_PORT_USART3
 #define FUNCTION_SPIKES ((serialPortFunction_e)(1 << 20))
 /* A port has 256 bytes of buffer, or more: a frame must find room in that. */
 #define FRAME 192u
 
-static sw_step_forward_f32 codec;
-static sw_step_forward_f32_encoder encoders[CHANNELS];
+static sw_betaflight_bank bank;
 static uintptr_t storage[SW_QUEUE_WORDS(128)];
 static sw_queue queue;
 static sw_writer writer;
@@ -39,17 +37,7 @@ void taskSpikes(timeUs_t now);
 
 bool spikesInit(void)
 {
-    sw_error error;
-
-    if (sw_step_forward_f32_init(&codec, THRESHOLD, &error) != SW_OK) {
-        return false;
-    }
-    for (uint32_t i = 0; i < CHANNELS; ++i) {
-        if (sw_step_forward_f32_encoder_start(&encoders[i], &codec) != SW_OK) {
-            return false;
-        }
-    }
-    if (sw_queue_init(&queue, storage, sizeof storage) != SW_OK) {
+    if ((sw_betaflight_bank_start(&bank) != SW_OK) || (sw_queue_init(&queue, storage, sizeof storage) != SW_OK)) {
         return false;
     }
     port = openSerialPort(SPIKES_PORT, FUNCTION_SPIKES, NULL, NULL, 921600u, MODE_TX, SERIAL_NOT_INVERTED);
@@ -60,9 +48,7 @@ void taskSpikes(timeUs_t now)
 {
     static uint8_t frame[FRAME];
     static uint32_t sample;
-    const sw_stamp stamp = {(uint32_t)now, 0u, 0u};
-    const float rates[CHANNELS] = {gyro.gyroADCf[0], gyro.gyroADCf[1], gyro.gyroADCf[2]};
-    int8_t codes[CHANNELS];
+    const sw_betaflight_sample rates[CHANNELS] = {gyro.gyroADCf[0], gyro.gyroADCf[1], gyro.gyroADCf[2]};
     size_t length = 0;
 
     /* The noise of 64 samples is the session, as no other start has it. */
@@ -73,16 +59,18 @@ void taskSpikes(timeUs_t now)
         memcpy(&bits, &rates[sample % CHANNELS], sizeof bits);
         session = (session ^ bits) * 0x9E3779B97F4A7C15u;
         if (++sample == 64u) {
-            (void)sw_writer_init(&writer, CHANNELS, PERIOD_US, session);
+            (void)sw_betaflight_writer_init(&writer, session);
+            sample = SW_BETAFLIGHT_KEYFRAME_EVERY * 64u; /* a keyframe comes first */
         }
         return;
     }
-    (void)sw_step_forward_f32_bank(encoders, rates, codes, CHANNELS, &stamp, &queue);
-    if ((sample % (1000000u / PERIOD_US / KEYFRAMES_A_SECOND)) == 0u) {
-        (void)sw_step_forward_f32_keyframes(encoders, CHANNELS, &stamp, &queue);
+    (void)sw_betaflight_bank_encode(&bank, (uint32_t)now, rates, &queue);
+    if ((sample % SW_BETAFLIGHT_KEYFRAME_EVERY) == 0u) {
+        (void)sw_betaflight_bank_keyframes(&bank, (uint32_t)now, &queue);
     }
     ++sample;
     /* Only what the port takes at once: the task never waits. */
+    (void)sw_writer_observe(&writer, (uint32_t)now);
     if ((serialTxBytesFree(port) >= FRAME) &&
         (sw_writer_next_frame(&writer, &queue, frame, sizeof frame, &length) == SW_OK)) {
         serialWriteBuf(port, frame, (int)length);

@@ -1,7 +1,9 @@
 /* An app-layer file for the Crazyflie: spikes of the three turn rates to the ground, over the app channel.
  *
- * An app as examples/app_hello_world of the firmware is one: its Makefile, its app-config with CONFIG_APP_STACKSIZE=600,
- * and in its Kbuild, with this file beside it as spikes.c,
+ * `spikewire emit c --flight crazyflie.toml -o spikes` makes both ends of crazyflie.toml beside this file, as the library's
+ * README shows: SPIKEWIRE is a directory with its headers in include and its archive as lib/libspikewire.a. The rest is an app
+ * as examples/app_hello_world of the firmware is one: its Makefile, its app-config with CONFIG_APP_STACKSIZE=600, and in its
+ * Kbuild, with this file beside it as spikes.c,
  *
  *     obj-y += spikes.o spikewire.o
  *     ccflags-y += -I$(SPIKEWIRE)/include
@@ -9,8 +11,8 @@
  *     	$(LD) -r -nostdlib -Wl,--whole-archive $< -o $@
  *
  * The build knows no libraries, so that the archive becomes an object, of which the last link keeps what is called.
- * Then `make cf2_defconfig && make SPIKEWIRE=…/target/c-library/cortex-m4`. The ground feeds what arrives to
- * sw_reader_take, or to `spikewire listen --from link`.
+ * Then `make cf2_defconfig && make SPIKEWIRE=…`. The ground feeds what arrives to sw_crazyflie_receiver_take, or to
+ * `spikewire listen --flight crazyflie.toml`.
  */
 #include <string.h>
 #include "FreeRTOS.h"
@@ -20,31 +22,24 @@
 #include "log.h"
 #include "task.h"
 
-#include "spikewire/step_forward.h"
+#include "crazyflie.h"
 
-#define CHANNELS 3u
-#define PERIOD_MS 2u
-#define KEYFRAMES_A_SECOND 20u /* after a loss, values are exact again within 50 ms */
-#define THRESHOLD 5.0f /* degrees a second */
+#define CHANNELS SW_CRAZYFLIE_CHANNELS
+#define PERIOD_MS (SW_CRAZYFLIE_PERIOD / 1000u)
 
-static sw_step_forward_f32 codec;
-static sw_step_forward_f32_encoder encoders[CHANNELS];
-static uintptr_t storage[SW_QUEUE_WORDS(128)];
+static sw_crazyflie_bank bank;
+static uintptr_t storage[SW_QUEUE_WORDS(512)]; /* what gathers in 20 ms */
 static sw_queue queue;
 static sw_writer writer;
 
 static sw_status start(uint64_t session)
 {
-    sw_error error;
-    sw_status status = sw_step_forward_f32_init(&codec, THRESHOLD, &error);
-    for (uint32_t i = 0; (i < CHANNELS) && (status == SW_OK); ++i) {
-        status = sw_step_forward_f32_encoder_start(&encoders[i], &codec);
-    }
+    sw_status status = sw_crazyflie_bank_start(&bank);
     if (status == SW_OK) {
         status = sw_queue_init(&queue, storage, sizeof storage);
     }
     if (status == SW_OK) {
-        status = sw_writer_init(&writer, CHANNELS, PERIOD_MS * 1000u, session);
+        status = sw_crazyflie_writer_init(&writer, session);
     }
     return status;
 }
@@ -52,7 +47,6 @@ static sw_status start(uint64_t session)
 void appMain(void)
 {
     static uint8_t frame[SW_MAX_FRAME];
-    int8_t codes[CHANNELS];
     TickType_t woken = xTaskGetTickCount();
     const logVarId_t gyro[CHANNELS] = {
         logGetVarId("gyro", "x"), logGetVarId("gyro", "y"), logGetVarId("gyro", "z")};
@@ -75,19 +69,21 @@ void appMain(void)
         return;
     }
     for (uint32_t sample = 0;; ++sample) {
-        const sw_stamp stamp = {(uint32_t)(xTaskGetTickCount() * 1000u), 0u, 0u};
-        float rates[CHANNELS];
+        const uint32_t now = (uint32_t)(xTaskGetTickCount() * 1000u);
+        sw_crazyflie_sample rates[CHANNELS];
         size_t length = 0;
 
         for (uint32_t i = 0; i < CHANNELS; ++i) {
             rates[i] = logGetFloat(gyro[i]);
         }
-        (void)sw_step_forward_f32_bank(encoders, rates, codes, CHANNELS, &stamp, &queue);
-        if ((sample % (1000u / PERIOD_MS / KEYFRAMES_A_SECOND)) == 0u) {
-            (void)sw_step_forward_f32_keyframes(encoders, CHANNELS, &stamp, &queue);
+        (void)sw_crazyflie_bank_encode(&bank, now, rates, &queue);
+        if ((sample % SW_CRAZYFLIE_KEYFRAME_EVERY) == 0u) {
+            (void)sw_crazyflie_bank_keyframes(&bank, now, &queue);
         }
-        /* A packet of the radio is shorter than a frame, which a reader takes cut anywhere. */
-        if (((sample % 10u) == 0u) && (sw_writer_next_frame(&writer, &queue, frame, sizeof frame, &length) == SW_OK)) {
+        /* A frame goes once its first event is 20 ms old, as `gathering` in the file says; the writer knows the time by this. */
+        (void)sw_writer_observe(&writer, now);
+        if (sw_writer_next_frame(&writer, &queue, frame, sizeof frame, &length) == SW_OK) {
+            /* A packet of the radio is shorter than a frame, which a reader takes cut anywhere. */
             for (size_t at = 0; at < length; at += APPCHANNEL_MTU) {
                 size_t rest = length - at;
                 /* Without a radio there is no room: the rest is lost to the reader, which counts the frame as lost. */

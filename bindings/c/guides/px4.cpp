@@ -1,6 +1,8 @@
 // A PX4 module: spikes of the vehicle's three turn rates out of a serial device.
 //
-// It stays outside PX4's tree, in a directory DIR: this file as DIR/src/modules/spikes/Spikes.cpp, beside it CMakeLists.txt
+// `spikewire emit c --flight px4.toml -o spikes` makes both ends of px4.toml beside this file, as the library's README shows:
+// a header, px4.h, and an archive. The file has 800 samples a second: set IMU_GYRO_RATEMAX to 800. The module stays outside PX4's
+// tree, in a directory DIR: this file as DIR/src/modules/spikes/Spikes.cpp, beside it CMakeLists.txt
 //
 //     find_package(spikewire CONFIG REQUIRED PATHS ${SPIKEWIRE})
 //     px4_add_module(MODULE modules__spikes MAIN spikes SRCS Spikes.cpp)
@@ -8,8 +10,9 @@
 //
 // and in DIR/src/CMakeLists.txt the line `set(config_module_list_external modules/spikes PARENT_SCOPE)`. Then, in PX4's tree,
 // `make px4_fmu-v6c EXTERNAL_MODULES_LOCATION=DIR CMAKE_ARGS=-DSPIKEWIRE=LIBRARY`, where LIBRARY is target/c-library/cortex-m7
-// of spikewire, and `spikes start` in the shell or in rc.txt. ModuleBase is that since 19 February 2026, without a template,
-// whose descriptor holds the instance.
+// of spikewire with the header and the archive of px4.toml in place of its own, and `spikes start` in the shell or in rc.txt.
+// ModuleBase is that since 19 February 2026, without a template, whose descriptor holds the instance. `spikewire listen --flight
+// px4.toml` reads what arrives.
 
 #include <fcntl.h>
 #include <string.h>
@@ -22,7 +25,7 @@
 #include <uORB/SubscriptionCallback.hpp>
 #include <uORB/topics/vehicle_angular_velocity.h>
 
-#include "spikewire/step_forward.h"
+#include "px4.h"
 
 class Spikes : public ModuleBase, public px4::ScheduledWorkItem
 {
@@ -74,14 +77,7 @@ public:
 
 	bool init()
 	{
-		sw_error error;
-		sw_status status = sw_step_forward_f32_init(&_codec, THRESHOLD, &error);
-
-		for (sw_step_forward_f32_encoder &encoder : _encoders) {
-			if (status == SW_OK) {
-				status = sw_step_forward_f32_encoder_start(&encoder, &_codec);
-			}
-		}
+		sw_status status = sw_px4_bank_start(&_bank);
 
 		if (status == SW_OK) {
 			status = sw_queue_init(&_queue, _storage, sizeof(_storage));
@@ -106,11 +102,6 @@ public:
 	}
 
 private:
-	static constexpr size_t CHANNELS = 3;
-	static constexpr float THRESHOLD = 0.1f; // rad/s
-	static constexpr uint32_t RATE = 400;    // samples a second: IMU_GYRO_RATEMAX
-	static constexpr uint32_t KEYFRAMES_A_SECOND = 20; // values are exact again 50 ms after a loss
-
 	void Run() override
 	{
 		vehicle_angular_velocity_s rates;
@@ -128,26 +119,27 @@ private:
 		// The noise of 64 samples is the session, as no other start has it.
 		if (_sample < 64) {
 			uint32_t bits;
-			memcpy(&bits, &rates.xyz[_sample % CHANNELS], sizeof(bits));
+			memcpy(&bits, &rates.xyz[_sample % SW_PX4_CHANNELS], sizeof(bits));
 			_session = (_session ^ bits) * 0x9E3779B97F4A7C15u;
 
 			if (++_sample == 64) {
-				(void)sw_writer_init(&_writer, CHANNELS, 1000000 / RATE, _session);
+				(void)sw_px4_writer_init(&_writer, _session);
+				_sample = SW_PX4_KEYFRAME_EVERY * 64; // a keyframe comes first
 			}
 
 			return;
 		}
 
-		const sw_stamp stamp = {static_cast<uint32_t>(rates.timestamp_sample), 0, 0};
-		int8_t codes[CHANNELS];
-		(void)sw_step_forward_f32_bank(_encoders, rates.xyz, codes, CHANNELS, &stamp, &_queue);
+		const uint32_t now = static_cast<uint32_t>(rates.timestamp_sample);
+		(void)sw_px4_bank_encode(&_bank, now, rates.xyz, &_queue);
 
-		if (_sample++ % (RATE / KEYFRAMES_A_SECOND) == 0) {
-			(void)sw_step_forward_f32_keyframes(_encoders, CHANNELS, &stamp, &_queue);
+		if (_sample++ % SW_PX4_KEYFRAME_EVERY == 0) {
+			(void)sw_px4_bank_keyframes(&_bank, now, &_queue);
 		}
 
 		uint8_t frame[SW_MAX_FRAME];
 		size_t length = 0;
+		(void)sw_writer_observe(&_writer, now);
 
 		if (sw_writer_next_frame(&_writer, &_queue, frame, sizeof(frame), &length) == SW_OK) {
 			// What the device does not take is lost to the reader, which counts it.
@@ -156,8 +148,7 @@ private:
 	}
 
 	uORB::SubscriptionCallbackWorkItem _rates{this, ORB_ID(vehicle_angular_velocity)};
-	sw_step_forward_f32 _codec{};
-	sw_step_forward_f32_encoder _encoders[CHANNELS] {};
+	sw_px4_bank _bank{};
 	uintptr_t _storage[SW_QUEUE_WORDS(128)] {};
 	sw_queue _queue{};
 	sw_writer _writer{};

@@ -139,7 +139,7 @@ unsafe extern "C" fn sw_reader_take(
             frame.heartbeats().map(|address| Item::Heartbeat { tick, address }).for_each(give);
             received.frame.events().map(Item::Event).for_each(give);
         }
-        Ok(Status::OK)
+        Ok(if reader.other_version().is_some() { Status::OTHER_VERSION } else { Status::OK })
     };
     read().into()
 }

@@ -37,6 +37,8 @@ statuses! {
     WAITING = 1, c"the encoder waits for later samples";
     /// There is no keyframe, no item, no frame, no code now.
     NOTHING = 2, c"there is nothing now";
+    /// See [`Reader::other_version`](spikewire::link::Reader::other_version).
+    OTHER_VERSION = 3, c"the bytes are of another version of the link";
     /// See [`Withheld::Keyframe`](spikewire::link::Withheld::Keyframe).
     NO_KEYFRAME = 10, c"not exact: no keyframe since the start or the last loss";
     /// See [`Withheld::Samples`](spikewire::link::Withheld::Samples).

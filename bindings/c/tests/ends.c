@@ -140,6 +140,7 @@ static void send(const flight *own, sent *to)
         if (place % own->keyframe_every == 0u) {
             own->keyframes(now, &queue);
         }
+        check(sw_writer_observe(&writer, now), "writer_observe");
         while (sw_writer_next_frame(&writer, &queue, frame, sizeof frame, &length) == SW_OK) {
             if (length > MOST_BYTES - to->length) {
                 board_print("no room\n");

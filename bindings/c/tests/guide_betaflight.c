@@ -1,4 +1,6 @@
 /* Betaflight's task on the host: a UART with a buffer of 256 bytes, which 921600 baud empty by 92 a millisecond. */
+#include "betaflight.h"
+#define GUIDE(name) sw_betaflight_##name
 #include "guide_ground.h"
 
 #include "platform.h"
@@ -41,7 +43,7 @@ void serialWriteBuf(serialPort_t *port, const uint8_t *data, int count)
 
 int main(void)
 {
-    (void)sw_reader_init(&receiver.reader);
+    ground_init(&receiver);
     is_bad = spikesInit() ? 0 : 1;
     for (uint32_t sample = 0; sample < 4000u; ++sample) {
         for (uint32_t axis = 0; axis < 3u; ++axis) {

@@ -1,5 +1,7 @@
 /* The Crazyflie's app on the host: three seconds with a radio, then one without, in which it must not wait. */
 #include <setjmp.h>
+#include "crazyflie.h"
+#define GUIDE(name) sw_crazyflie_##name
 #include "guide_ground.h"
 
 #include "FreeRTOS.h"
@@ -58,7 +60,7 @@ int main(void)
 {
     int is_bad;
 
-    (void)sw_reader_init(&receiver.reader);
+    ground_init(&receiver);
     fly(3000u);
     is_bad = ground_says(&receiver, "crazyflie");
     has_radio = 0;

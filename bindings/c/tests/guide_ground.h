@@ -1,12 +1,13 @@
-/* The ground of a guide's test: it reads what arrives, and says whether it is what was sent. */
+/* The ground of a guide's test: it reads what arrives, and says whether it is what was sent. GUIDE(name) is the name of a type or
+ * function of the guide's flight. */
 #ifndef GUIDE_GROUND_H
 #define GUIDE_GROUND_H
 
 #include <stdio.h>
-#include "spikewire.h"
 
 typedef struct ground {
     sw_reader reader;
+    GUIDE(receiver) receiver;
     uint32_t events;
     uint32_t keyframes;
 } ground;
@@ -18,20 +19,32 @@ static void ground_item(void *context, const sw_item *item)
     own->keyframes += (item->kind == SW_KEYFRAME) ? 1u : 0u;
 }
 
+static void ground_init(ground *own)
+{
+    (void)sw_reader_init(&own->reader);
+    (void)GUIDE(receiver_init)(&own->receiver);
+}
+
 static void ground_take(ground *own, const uint8_t *bytes, size_t length)
 {
     (void)sw_reader_take(&own->reader, bytes, length, ground_item, own);
+    (void)GUIDE(receiver_take)(&own->receiver, bytes, length, NULL, NULL);
 }
 
-/* 0 if frames with spikes came, keyframes of three channels 20 times a second for at least 2.5 s, and no frame was lost or
- * cut. */
+/* 0 if frames with spikes came, keyframes of three channels twice a second for at least 2.5 s, no frame was lost or cut, and
+ * the values are exact: sender and receiver are of one flight file. */
 static int ground_says(const ground *own, const char *guide)
 {
     sw_reader_counts counts;
+    uint32_t exact = 0;
+    for (uint16_t channel = 0; channel < 3u; ++channel) {
+        GUIDE(sample) value;
+        exact += (GUIDE(receiver_exact)(&own->receiver, channel, &value) == SW_OK) ? 1u : 0u;
+    }
     (void)sw_reader_counts_of(&own->reader, &counts);
-    (void)printf("%s: %u frames, %u events, %u keyframes, %u lost, %u skipped bytes\n", guide, (unsigned)counts.frames,
-        (unsigned)own->events, (unsigned)own->keyframes, (unsigned)counts.lost_frames, (unsigned)counts.skipped);
-    return ((counts.frames > 20u) && (own->events > 100u) && (own->keyframes >= 3u * 20u * 5u / 2u) && (counts.lost_frames == 0u)
+    (void)printf("%s: %u frames, %u events, %u keyframes, %u lost, %u skipped bytes, %u exact\n", guide, (unsigned)counts.frames,
+        (unsigned)own->events, (unsigned)own->keyframes, (unsigned)counts.lost_frames, (unsigned)counts.skipped, (unsigned)exact);
+    return ((counts.frames > 20u) && (own->events > 100u) && (own->keyframes >= 3u * 2u * 5u / 2u) && (exact == 3u) && (counts.lost_frames == 0u)
                && (counts.skipped == 0u))
         ? 0
         : 1;

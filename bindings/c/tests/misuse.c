@@ -153,6 +153,9 @@ static void linked(void)
     static sw_writer writer;
     static sw_reader reader;
     static uint8_t frame[SW_MAX_FRAME];
+    /* The empty first frame of a session by version 3 of the link. */
+    static const uint8_t version_3[22] = {0xA5u, 0x34u, 0x15u, 0x7Cu, 0x4Au, 0x7Fu, 0xB9u, 0x79u, 0xE8u, 0x03u, 0u,
+                                          0u,    0u,    0u,    0xE8u, 0x03u, 0u,    0u,    0x85u, 0xC1u, 0xF6u, 0x8Bu};
     sw_reader_counts counts;
     sw_stamp stamp = {1000u, 0u, 0u};
     uint32_t waiting = 0, lost = 0, sent = 0;
@@ -194,6 +197,7 @@ static void linked(void)
     }
     holds("all arrive", (received.events == sent) && (received.keyframes == 3u) && (received.breaks == 1u));
     is("no callback", sw_reader_take(&reader, frame, 5u, NULL, NULL), SW_NULL);
+    is("another version", sw_reader_take(&reader, version_3, sizeof version_3, take, &received), SW_OTHER_VERSION);
     is("counts", sw_reader_counts_of(&reader, &counts), SW_OK);
     holds("nothing is lost", (counts.frames >= 1u) && (counts.lost_frames == 0u) && (counts.bad_checksums == 0u));
 }

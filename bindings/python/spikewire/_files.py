@@ -10,22 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Number
+from ._arrays import Number, Whole
 from ._arrays import read as as_array
+from ._arrays import warn
 from ._bank import EVENTS
 from ._errors import Error, Unknown, checked
 from ._times import ticks
 
 
-class Log(NamedTuple):
-    """Channels of a recording.
-
-    >>> import numpy as np, spikewire as sw
-    >>> log = sw.Log(np.array([[0.0, 0.5], [9.8, 9.7]]), np.array([0, 5000]), ["gyro_x", "accel_z"], [])
-    >>> log, log["accel_z"].tolist(), log.rate
-    (Log of gyro_x, accel_z: (2, 2), [9.8, 9.7], 200.0)
-    """
-
+class _Channels(NamedTuple):
     #: The samples, ``float64`` (channels, samples), perhaps not finite.
     x: NDArray[Any]
     #: Their times in µs, ``int64``; none where a table has no time.
@@ -35,12 +28,34 @@ class Log(NamedTuple):
     #: How it was read, in sentences.
     notes: list[str]
 
+
+class Log(_Channels):
+    """Channels of a recording: samples `x`, times `t`, `names` and `notes`.
+
+    >>> import numpy as np, spikewire as sw
+    >>> log = sw.Log(np.array([[0.0, 0.5], [9.8, 9.7]]), np.array([0, 5000]), ["gyro_x", "accel_z"], [])
+    >>> log, log["accel_z"].tolist(), log.rate
+    (Log of gyro_x, accel_z: (2, 2), [9.8, 9.7], 200.0)
+    """
+
+    #: The rate that :func:`read` was given.
+    _given_rate: float | None = None
+
     @property
     def rate(self) -> float | None:
-        """Samples a second, by the usual step in time; none where there are no times."""
+        """Samples a second: those given to :func:`read`, or the samples through the length without gaps.
+
+        ``None`` where there are neither times nor a given rate. Warns if the usual step in time contradicts it by a fifth
+        or more, as where samples arrive in bursts.
+        """
+        if self._given_rate is not None:
+            return self._given_rate
         if self.t is None or len(self.t) < 2:
             return None
-        return 1e6 / float(np.median(np.diff(self.t)))
+        rate, uncertain = _native.rate_of(np.ascontiguousarray(self.t, dtype=np.int64))
+        if uncertain:
+            warn(f"the rate is uncertain: {uncertain}; rate= says how many samples a second are taken")
+        return rate
 
     def __repr__(self) -> str:
         return f"Log of {', '.join(self.names)}: {self.x.shape}"
@@ -62,6 +77,7 @@ def read(
     time: str | None = None,
     time_unit: str | None = None,
     delimiter: str | None = None,
+    header: Whole | None = None,
     rate: Number | None = None,
     gap: Number | None = None,
     skip_non_finite: bool = False,
@@ -70,8 +86,9 @@ def read(
     """Channels of a flight log or table, by name; all of a table unless some are named: :class:`Log`.
 
     Of a log, `topic` and one `field` of it or several. `time` is the column of times and `time_unit` ``"s"``, ``"ms"``,
-    ``"us"`` or ``"ns"``, both found unless given; without times, `rate` says how many samples a second there are. Steps
-    in time above `gap` usual ones are noted. `skip_non_finite` goes on over values that are missing, and `accept_cut`
+    ``"us"`` or ``"ns"``, both found unless given; `header` is the line of a table that names its columns, from 1, where it
+    is not found. `rate` says how many samples a second there are, where the times do not. Steps in time above `gap` usual
+    ones are noted. `skip_non_finite` goes on over values that are missing, and `accept_cut`
     over what is damaged.
 
     >>> import pathlib, tempfile, spikewire as sw
@@ -87,13 +104,16 @@ def read(
         "time": None if time is None else str(time),
         "time_unit": time_unit,
         "delimiter": delimiter,
+        "header": header,
         "rate": rate,
         "gap": gap,
         "skip_non_finite": skip_non_finite,
         "accept_cut": accept_cut,
     }
     names, columns, times, notes = _native.read(str(Path(path)), keywords)
-    return Log(np.array(columns), times if len(times) else None, names, notes)
+    log = Log(np.array(columns), times if len(times) else None, names, notes)
+    log._given_rate = None if rate is None else float(rate)
+    return log
 
 
 def read_ulog(path: str | Path, topic: str, *fields: str, accept_cut: bool = False) -> Log:

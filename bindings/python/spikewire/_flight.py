@@ -43,7 +43,7 @@ class Flight:
         from ._schemes import schemes
 
         told = _native.flight(os.fspath(path))
-        scheme, sample, period, keyframe_every, clock_ppm, label, fingerprint, filtered, channels, rounded = told
+        scheme, sample, period, keyframe_every, clock_ppm, label, fingerprint, filtered, channels, rounded, sends = told
         for change in rounded:
             warnings.warn(change, stacklevel=2)
         #: The short name of the scheme of every channel.
@@ -68,12 +68,19 @@ class Flight:
         self.label: str = label
         #: The 32 bits of schemes, filter and label that the frames carry.
         self.fingerprint: int = fingerprint
+        #: Low bits of its step number that the first event of a channel in a frame carries, so that step codes heal.
+        self.step_bits: int = sends[0]
+        #: The longest time in µs that events wait for others.
+        self.gathering: int = sends[1]
+        #: The time in µs from one full frame to the next.
+        self.full_every: int = sends[2]
         #: The filter before every code; ``None`` without.
         self.filter: Filter | None = _filter(filtered, 1e6 / period)
 
     def sender(self, session: int = 0) -> Sender:
         """The bank and the frames of its events; `session` differs at each start."""
-        return Sender(self.schemes, self.period, self.keyframe_every, session, self.filter, self.label)
+        sends = {"step_bits": self.step_bits, "gathering": self.gathering, "full_every": self.full_every}
+        return Sender(self.schemes, self.period, self.keyframe_every, session, self.filter, self.label, **sends)
 
     def receiver(self) -> Receiver:
         """The decoders."""

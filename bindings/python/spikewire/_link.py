@@ -23,8 +23,11 @@ class Sender:
     channel, of one kind and with as many neurons. A bank has 1 to 64 channels. A sample is taken every `period` µs. After
     the first and every `keyframe_every` samples comes a keyframe, or a heartbeat of codes without.
     `filter` is one before the code of all channels, or one for each, or None. `label` is a text that both ends must share,
-    such as names and units of the channels. The bytes are those of a firmware with the same schemes, filters, `period`,
-    `label` and `session`. It pickles before its first sample.
+    such as names and units of the channels. The first event of a channel in a frame carries `step_bits` low bits of its step
+    number, 0 to 4: with 4, a step code has the sender's value again at its next event after a loss of 7 net steps or fewer.
+    Events wait up to `gathering` µs for others, so that fewer frames go; and after `full_every` µs a frame is full, so that a
+    receiver can join. The bytes are those of a firmware with the same schemes, filters, `period`,
+    `label`, `session` and these three. It pickles before its first sample.
 
     >>> import spikewire as sw
     >>> scheme = sw.StepForward(threshold=0.1)
@@ -48,11 +51,25 @@ class Sender:
         label: str | None = None,
         channels: Whole | None = None,
         step_bits: Whole = 0,
+        gathering: Whole = 0,
+        full_every: Whole = 1 << 19,
     ):
-        self._made_of = schemes, period, keyframe_every, session, filter, label, channels, step_bits
+        self._made_of = (
+            schemes,
+            period,
+            keyframe_every,
+            session,
+            filter,
+            label,
+            channels,
+            step_bits,
+            gathering,
+            full_every,
+        )
         coders = _coders(schemes, channels)
         filters = _filters(filter, len(coders))
-        self._native = _native.Sender(coders, filters, period, keyframe_every, session, label, step_bits)
+        sends = {"step_bits": step_bits, "gathering": gathering, "full_every": full_every}
+        self._native = _native.Sender(coders, filters, period, keyframe_every, session, label, sends)
         self._sample = schemes[0].sample if isinstance(schemes, Sequence) else schemes.sample
         # Behind a filter, a sample may be in the range again.
         ranges = [] if any(filters) else [coder.ranges() for coder in coders]

@@ -12,10 +12,25 @@ type Heard = (String, String, String, f64, Vec<(&'static str, Given)>);
 /// A filter: its kind, its corner or centre in Hz, and a notch's `q`.
 type Filtering = (&'static str, f32, Option<f32>);
 
+/// What the sender alone decides: bits of step numbers, the time in µs that events wait for others, and that from one full
+/// frame to the next.
+type Sends = (u8, u32, u32);
+
 /// A flight: scheme, sample type, period in µs, samples from keyframe to keyframe, error of the clock in millionths, label,
-/// fingerprint, filter, channels, parameters that the sample type changes.
-type FlightFields =
-    (&'static str, String, u16, u32, u32, String, u32, Option<Filtering>, Vec<Heard>, Vec<String>);
+/// fingerprint, filter, channels, parameters that the sample type changes, and what the sender decides.
+type FlightFields = (
+    &'static str,
+    String,
+    u32,
+    u32,
+    u32,
+    String,
+    u32,
+    Option<Filtering>,
+    Vec<Heard>,
+    Vec<String>,
+    Sends,
+);
 
 /// Reads a flight's file.
 #[pyfunction]
@@ -41,5 +56,6 @@ pub(crate) fn flight(path: &str) -> PyResult<FlightFields> {
         filter,
         channels.collect(),
         flight.rounded().iter().map(ToString::to_string).collect(),
+        (flight.step_bits, flight.gathering, flight.full_every),
     ))
 }

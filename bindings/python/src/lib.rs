@@ -40,7 +40,7 @@ mod _native {
     use super::info::schemes;
     #[pymodule_export]
     use super::library::{
-        advise, from_toml, plot, read, read_events, score, to_c, to_rust, to_toml, tune,
+        advise, from_toml, plot, rate_of, read, read_events, score, to_c, to_rust, to_toml, tune,
         write_events,
     };
     #[pymodule_export]

@@ -10,7 +10,7 @@ use lab::advise::AdviseRequest;
 use lab::coding::Coding;
 use lab::emit::Codec;
 use lab::events::PixelEvent;
-use lab::input::{ChannelOptions, InputOptions, TableKind};
+use lab::input::{CHUNK, ChannelOptions, Chunk, Clock, InputOptions, TableKind};
 use lab::plot::Picture;
 use lab::scheme::Scheme;
 use lab::score::Figures;
@@ -323,6 +323,7 @@ pub(crate) struct Input {
     time: Option<String>,
     time_unit: Option<String>,
     delimiter: Option<String>,
+    header: Option<u64>,
     topic: Option<String>,
     fields: Vec<String>,
     rate: Option<f64>,
@@ -349,6 +350,7 @@ impl Input {
             time: self.time,
             time_unit: parsed("time_unit", self.time_unit)?,
             delimiter: parsed("delimiter", self.delimiter)?,
+            header: self.header,
             topic: self.topic,
             fields: self.fields,
             rate: self.rate,
@@ -377,13 +379,33 @@ pub(crate) fn read<'py>(py: Python<'py>, path: &str, keywords: Input) -> PyResul
     let done = work::detached(py, true, || {
         let options = InputOptions { input: path.into(), channel: keywords.channel()? };
         let mut source = options.or_all()?.open()?;
-        let all = source.rest()?;
+        let mut all = Chunk::default();
+        source.next(&mut all)?;
+        // As in the program, the first piece tells the usual step.
+        let first = all.times.len();
+        all.append(&mut source.rest()?);
+        let mut clock = Clock::new(&all.times[..first], options.rate, options.gap);
+        clock.observe(&all.times);
         let names = source.names().into_iter().map(str::to_owned).collect();
-        anyhow::Ok((names, all, source.notes().iter().map(ToString::to_string).collect()))
+        let mut notes: Vec<String> = source.notes().iter().map(ToString::to_string).collect();
+        if first > 0 {
+            notes.push(clock.to_string());
+        }
+        anyhow::Ok((names, all, notes))
     })?;
     let (names, all, notes) = done.map_err(value)?;
     let columns = all.columns.into_iter().map(|column| column.into_pyarray(py)).collect();
     Ok((names, columns, all.times.into_pyarray(py), notes))
+}
+
+/// The rate of times in µs, in samples a second, and why it is uncertain.
+#[pyfunction]
+pub(crate) fn rate_of(times: PyReadonlyArray1<i64>) -> PyResult<(Option<f64>, Option<String>)> {
+    let times = times.as_slice()?;
+    let mut clock =
+        Clock::new(&times[..times.len().min(CHUNK)], None, ChannelOptions::default().gap);
+    clock.observe(times);
+    Ok((clock.rate(), clock.uneven().map(|uneven| uneven.to_string())))
 }
 
 /// Times in µs, addresses or columns, rows if there are columns, polarities, notes.

@@ -1,6 +1,7 @@
 //! A bank of channels at one end of a link, and its decoders at the other.
 
 use std::any::Any;
+use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Result, anyhow, bail};
@@ -157,8 +158,40 @@ struct Build<'a> {
 /// What both ends have in common beside the schemes.
 struct Link {
     filters: Vec<Option<Filter>>,
-    period: u16,
+    period: u32,
     label: Option<String>,
+}
+
+/// What the sender alone decides: bits of step numbers, and times in µs.
+#[derive(FromPyObject)]
+struct Sends {
+    #[pyo3(item)]
+    step_bits: u8,
+    #[pyo3(item)]
+    gathering: u32,
+    #[pyo3(item)]
+    full_every: u32,
+}
+
+impl Sends {
+    /// Checks that the settings are in the ranges of a flight's file, and that the schemes have steps if their numbers are
+    /// to be sent.
+    fn check(&self, scheme: &catalogue::Info) -> Result<()> {
+        let Self { step_bits, gathering, full_every } = *self;
+        for (name, given, most) in [
+            ("step_bits", u32::from(step_bits), 4),
+            ("gathering", gathering, 1_000_000),
+            ("full_every", full_every, 10_000_000),
+        ] {
+            if given > most {
+                bail!("{name} {given} must lie in 0..={most}");
+            }
+        }
+        if step_bits > 0 && !scheme.has_first_value() {
+            bail!("step_bits {step_bits}: {} has no steps whose number could be sent", scheme.name);
+        }
+        Ok(())
+    }
 }
 
 impl<S: Sample> Visit<S> for Build<'_> {
@@ -208,11 +241,9 @@ impl Build<'_> {
         let slots = schemes.iter().map(|own| own.slots()).max().unwrap_or(1);
         let is_slotted = P::RECOVERY != Recovery::Keyframe && slots > 1;
         let slots = slots as u32;
-        let slot_ticks =
-            if is_slotted { longest_slot(slots, (*period).into(), CLOCK_TOLERANCE) } else { 0 };
+        let slot_ticks = if is_slotted { longest_slot(slots, *period, CLOCK_TOLERANCE) } else { 0 };
         if is_slotted
-            && (slot_ticks == 0
-                || slot_ticks > longest_slot(slots, (*period).into(), clock_tolerance))
+            && (slot_ticks == 0 || slot_ticks > longest_slot(slots, *period, clock_tolerance))
         {
             bail!(
                 "{slots} sub-timesteps do not fit into {period} µs with a clock tolerance of {clock_tolerance} ppm"
@@ -220,7 +251,7 @@ impl Build<'_> {
         }
         let jitter = if is_slotted { slot_ticks.ilog2() as u8 + 2 } else { 0 };
         let end = (count * neurons) as u16;
-        let coding = Coding::for_channels(end, (*period).into());
+        let coding = Coding::for_channels(end, *period);
         let one = sample.one();
         let built = |own: &Option<Filter>| own.as_ref().map_or(Ok(Chain::none()), Filter::build);
         let filters = filters.iter().map(built).collect::<Result<Vec<_>>>()?;
@@ -281,6 +312,12 @@ fn ends(coders: &[Coder], link: &Link, clock_tolerance: u32) -> Result<Ends> {
     }
     let mut settings = Vec::new();
     for (stream, coder) in (0..).zip(coders) {
+        if coder.asked.get("start").is_some() && !coder.scheme.info().has_baseline() {
+            bail!(
+                "a bank of {} starts from its first samples, not from start=",
+                coder.scheme.info().name
+            );
+        }
         let past = vec![0.0; coder.looks_back()];
         settings.push(coder.settle(&past, None)?.with_stream(stream));
     }
@@ -305,6 +342,8 @@ struct Sending {
     keyframe_every: u64,
     samples: u64,
     items: Vec<Item>,
+    /// Items that wait for others.
+    waiting: VecDeque<Item>,
 }
 
 #[pymethods]
@@ -313,18 +352,23 @@ impl Sender {
     fn new(
         coders: Vec<Coder>,
         filters: Vec<Option<Filter>>,
-        period: u16,
+        period: u32,
         keyframe_every: u64,
         session: u32,
         label: Option<String>,
-        step_bits: u8,
+        sends: Sends,
     ) -> PyResult<Self> {
         let link = Link { filters, period, label };
         let Ends { near, coding, fingerprint, .. } = ends(&coders, &link, 0).map_err(value)?;
-        let session = Session::counted(session);
-        let transmitter = Transmitter::new(coding, session)
-            .with_fingerprint(fingerprint)
-            .with_step_bits(step_bits);
+        if let Some(coder) = coders.first() {
+            sends.check(coder.scheme.info()).map_err(value)?;
+        }
+        let Sends { step_bits, gathering, full_every } = sends;
+        let transmitter =
+            Transmitter::new(coding.with_step_bits(step_bits), Session::counted(session))
+                .with_fingerprint(fingerprint)
+                .with_gathering(gathering)
+                .with_full_every(full_every);
         Ok(Self(Mutex::new(Sending {
             near,
             channels: coders.len(),
@@ -333,14 +377,23 @@ impl Sender {
             keyframe_every: keyframe_every.max(1),
             samples: 0,
             items: Vec::new(),
+            waiting: VecDeque::new(),
         })))
     }
 
     /// Encodes a sample of each channel.
     fn encode<'py>(&self, py: Python<'py>, samples: Vec<f64>) -> PyResult<Sent<'py>> {
         let mut own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let Sending { near, channels, transmitter, period, keyframe_every, samples: count, items } =
-            &mut *own;
+        let Sending {
+            near,
+            channels,
+            transmitter,
+            period,
+            keyframe_every,
+            samples: count,
+            items,
+            waiting,
+        } = &mut *own;
         if samples.len() != *channels {
             let values = samples.len();
             return Err(value(anyhow!(
@@ -360,7 +413,9 @@ impl Sender {
         }
         *count += 1;
         let frames = PyList::empty(py);
-        let mut source = FromItems(items.drain(..));
+        waiting.extend(items.drain(..));
+        transmitter.observe(tick);
+        let mut source = FromItems(std::iter::from_fn(|| waiting.pop_front()));
         let mut buffer = [0; MAX_FRAME];
         while let Some(frame) = transmitter
             .next_frame(&mut source, &mut buffer)
@@ -387,7 +442,7 @@ impl Hearer {
     fn new(
         coders: Vec<Coder>,
         filters: Vec<Option<Filter>>,
-        period: u16,
+        period: u32,
         clock_tolerance: f64,
         label: Option<String>,
     ) -> PyResult<Self> {

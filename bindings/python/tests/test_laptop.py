@@ -2,8 +2,10 @@
 
 import json
 import os
+import pickle
 import shutil
 import subprocess
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -45,6 +47,61 @@ def test_a_recording_is_read_by_name(log):
         with pytest.raises(sw.Error, match=words) as caught:
             sw.read(FLIGHT, **bad)
         assert caught.value.parameter == next(iter(bad))
+
+
+def packets(path, names="time,gyro_x"):
+    """Samples at 800 Hz that arrive in packets of 8."""
+    rows = (f"{at // 8 * 0.01 + at % 8 * 0.00005:.6f},{at % 7}\n" for at in range(4000))
+    path.write_text(f"{names}\n" + "".join(rows))
+    return path
+
+
+def test_an_uneven_rate_is_never_silent(tmp_path):
+    uneven = "800.00 Hz by samples through length, 20000.00 Hz by the median step"
+    log = sw.read(packets(tmp_path / "b.csv"))
+    assert any(uneven in note for note in log.notes)
+    with pytest.warns(UserWarning, match=uneven) as warned:
+        assert abs(log.rate - 800) < 0.01
+    assert warned[0].filename == __file__
+    # Made by hand, as after a cut.
+    with pytest.warns(UserWarning, match="by the median step"):
+        assert sw.Log(log.x, log.t[:800], log.names, []).rate > 700
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        given = sw.read(tmp_path / "b.csv", rate=750)
+        assert given.rate == 750 and pickle.loads(pickle.dumps(given)).rate == 750
+        assert not any("Hz, is not that" in note for note in given.notes)
+        even = sw.Log(log.x, np.arange(4000) * 1250, log.names, [])
+        assert even.rate == 800 and sw.read(FLIGHT, rate=200).rate == 200
+    given = sw.read(tmp_path / "b.csv", rate=100)
+    assert any("the rate that is given, 100.00 Hz, is not that of samples through length, 800.00 Hz" in own for own in given.notes)
+    sw.dataset(tmp_path / "b.csv", sw.StepForward(threshold=1), tmp_path / "set", channels=["gyro_x"], test=0)
+    row = json.loads((tmp_path / "set/manifest.jsonl").read_text().splitlines()[-1])
+    assert row["rate"] is None and any(uneven in note for note in row["notes"])
+    # A table without times has the rate that it is given.
+    (tmp_path / "x.csv").write_text("x\n0\n1\n")
+    assert sw.read(tmp_path / "x.csv").rate is None and sw.read(tmp_path / "x.csv", rate=50).rate == 50
+
+
+def test_the_header_and_the_unit_of_time_may_be_given(tmp_path):
+    path = tmp_path / "lines.csv"
+    rows = "".join(f"{at * 5},{at % 3}\n" for at in range(20))
+    path.write_text("gain,offset\n1,2\nvolts,more\ntime,gyro\n" + rows)
+    log = sw.read(path, header=4, time_unit="ms")
+    assert log.names == ["gyro"] and log.rate == 200
+    with pytest.raises(sw.Error, match="`time_unit` says their unit"):
+        sw.read(path, header=4, time_unit=None)
+    with pytest.raises((sw.Error, TypeError)):
+        sw.read(path, header="four")
+    counts = sw.dataset(
+        path, sw.StepForward(threshold=1), tmp_path / "set", channels=["gyro"], header=4, time_unit="ms", test=0
+    )
+    assert counts["samples"] == 20
+    long = tmp_path / "long.csv"
+    long.write_text("t_ms,x\n" + rows.replace("\n", ",7\n"))
+    with pytest.raises(sw.Error, match="line 2 has 3 columns where the header has 2; `header` 1 takes its names"):
+        sw.read(long)
+    assert sw.read(long, header=1).names == ["x", "3"]
 
 
 def test_a_name_with_a_comma_is_one_name(tmp_path):

@@ -163,7 +163,7 @@ def test_what_makes_no_bank_is_refused():
         ([sf] * 3 + [sod] * 3, "one kind of scheme"),
         (sw.Position(min=0, max=1, neurons=5, sample="f32"), None),
         ([sw.Position(min=0, max=1, neurons=n) for n in (5, 5, 5, 6, 6, 6)], "same number of neurons"),
-        (sw.StepForward(threshold=0.1, start=0), "start="),
+        (sw.MovingWindow(threshold=0.1, window=3, start=0), "start="),
         (sw.Gaussian(neurons=10), "needs"),
     ]:
         if words is None:
@@ -171,6 +171,45 @@ def test_what_makes_no_bank_is_refused():
         else:
             with pytest.raises(ValueError, match=words):
                 sw.Sender(schemes, PERIOD)
+
+
+@pytest.mark.parametrize("sample, is_exact", [("q8.8", True), ("f32", False)])
+def test_lost_steps_heal_at_the_next_event(sample, is_exact):
+    scheme = sw.SendOnDelta(threshold=0.0625, spikes=4, start=0, sample=sample)
+    sender = sw.Sender(scheme, PERIOD, keyframe_every=200, step_bits=4, gathering=4000)
+    whole, receiver = sw.Receiver(scheme, PERIOD), sw.Receiver(scheme, PERIOD)
+    frames, lost, healed, off = 0, 0, 0, set()
+    for x in signal(800):
+        for frame in sender.encode(x):
+            frames += 1
+            before = whole.values
+            whole.hear(frame)
+            moved = set(np.flatnonzero(whole.values != before))
+            if frames % 7 == 0 and len(frame) < 30:
+                lost, off = lost + 1, off | moved
+                continue
+            receiver.hear(frame)
+            for channel in moved:
+                assert abs(receiver.values[channel] - whole.values[channel]) <= (0 if is_exact else 1e-5)
+            healed, off = healed + len(moved & off), off - moved
+    assert lost > 20 and healed > 50, (lost, healed)
+
+
+def test_a_start_puts_baselines_on_a_grid():
+    scheme = sw.SendOnDelta(threshold=0.25, spikes=4, start=0)
+    sender, receiver = sw.Sender(scheme, PERIOD), sw.Receiver(scheme, PERIOD)
+    for frame in sender.encode([0.6, -0.3, 0.1, 9.8, 0, 0]):
+        receiver.hear(frame)
+    assert receiver.values.tolist() == [0.5, -0.25, 0, 1, 0, 0]
+
+
+def test_what_a_sender_decides_is_checked():
+    scheme = sw.StepForward(threshold=0.1)
+    for key, value in [("step_bits", 5), ("gathering", 1_000_001), ("full_every", 10_000_001)]:
+        with pytest.raises(ValueError, match=f"{key} {value} must lie in"):
+            sw.Sender(scheme, PERIOD, **{key: value})
+    with pytest.raises(ValueError, match="position has no steps"):
+        sw.Sender(sw.Position(min=0, max=1, neurons=5), PERIOD, step_bits=4)
 
 
 def test_usage_has_the_table_of_keyframes():

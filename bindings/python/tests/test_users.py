@@ -626,3 +626,15 @@ def test_words_for_a_wrong_scheme_or_axis(x):
     with pytest.raises(ValueError, match="axis 7: there are 1 axes"):
         step.decode(step.encode(x[0]).array, 0, 7)
     assert "x" not in sw.schemes and sw.schemes.get("x") is None
+
+
+def test_each_function_and_class_has_an_example():
+    # Of schemes, which have one text each, the stub's example stands for all; a module's class is documented as a whole.
+    without = []
+    for name in sw.__all__:
+        thing = getattr(sw, name)
+        if not callable(thing) or thing in sw.schemes.values() or not getattr(thing, "__module__", "").startswith("spikewire"):
+            continue
+        if ">>>" not in (thing.__doc__ or ""):
+            without.append(name)
+    assert not without, without

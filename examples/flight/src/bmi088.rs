@@ -94,7 +94,7 @@ impl<B: I2c> Imu for Bmi088<B> {
 
     /// Ten periods of silence, or twenty equal samples, are no accident; 100 ms to settle.
     const PLAN: Plan = Plan {
-        period: (1_000_000 / SAMPLE_RATE as u32) as u16,
+        period: 1_000_000 / SAMPLE_RATE as u32,
         settle: SAMPLE_RATE / 10,
         keyframe_every: SAMPLE_RATE / crate::KEYFRAMES,
         patience: 10_000,

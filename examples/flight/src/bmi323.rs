@@ -98,7 +98,7 @@ impl<D: SpiDevice> Imu for Bmi323<D> {
     /// 100 ms to settle, for starts of any kind: the data sheet's fastest takes 2.5 ms. Ten periods of silence, or twenty
     /// equal samples, are no accident.
     const PLAN: Plan = Plan {
-        period: (1_000_000 / SAMPLE_RATE as u32) as u16,
+        period: 1_000_000 / SAMPLE_RATE as u32,
         settle: SAMPLE_RATE / 10,
         keyframe_every: SAMPLE_RATE / crate::KEYFRAMES,
         patience: 12_500,

@@ -1,7 +1,7 @@
 //! From a sensor's counts to the samples of a flight's file.
 
 use crate::Sample;
-use crate::names::{G, RADIANS, axis, unit};
+use crate::names::{G, RADIANS, axis};
 
 /// Size of one count of a sensor: in rad/s for the turn rates, in m/s² for the accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,13 +30,18 @@ pub struct Channels<const N: usize> {
 }
 
 impl<const N: usize> Channels<N> {
-    /// Finds the channels of a flight by the items of its module: `NAMES`, `UNITS` and `COUNTS`. For constants: a channel
+    /// Finds the channels of a flight by the items of its module: `NAMES`, `SI` and `COUNTS`. For constants: a channel
     /// that a sensor does not have fails the build.
     ///
     /// # Panics
-    /// Panics if a name is no axis, or a unit is missing, or is neither `rad/s` nor `deg/s`, `m/s²` nor `g`.
+    /// Panics if a name is no axis, or a unit is missing, or is none of turn rates or of accelerations.
     #[must_use]
-    pub const fn new(sensor: Counts, names: [&str; N], units: [&str; N], counts: [f64; N]) -> Self {
+    pub const fn new(
+        sensor: Counts,
+        names: [&str; N],
+        si: [[f64; 2]; N],
+        counts: [f64; N],
+    ) -> Self {
         let mut channels = Self { axes: [0; N], scales: [0.0; N] };
         let mut channel = 0;
         while channel < N {
@@ -46,12 +51,15 @@ impl<const N: usize> Channels<N> {
                     "a channel of flight.toml has no axis in its name, such as gyro_x or accel_z"
                 )
             };
-            let Some(unit) = unit(units[channel], axis < 3) else {
-                panic!("a channel's `unit` in flight.toml must be rad/s, deg/s, m/s² or g")
-            };
-            let si = if axis < 3 { sensor.rate } else { sensor.acceleration };
+            let [rate, acceleration] = si[channel];
+            let (count, unit) =
+                if axis < 3 { (sensor.rate, rate) } else { (sensor.acceleration, acceleration) };
+            assert!(
+                unit > 0.0,
+                "a channel's `unit` in flight.toml must be one such as rad/s, deg/s, m/s² or g"
+            );
             channels.axes[channel] = axis;
-            channels.scales[channel] = (si / unit * counts[channel]) as f32;
+            channels.scales[channel] = (count / unit * counts[channel]) as f32;
             channel += 1;
         }
         channels

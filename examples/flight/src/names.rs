@@ -1,5 +1,5 @@
-//! Names and units of a flight's channels: the axis of the sensor that each takes. `cargo xtask new-firmware` checks a flight's
-//! file by this file, too.
+//! Names of a flight's channels: the axis of the sensor that each takes. `cargo xtask new-firmware` checks a flight's file by
+//! this file, too.
 
 /// rad of 1°.
 pub(crate) const RADIANS: f64 = core::f64::consts::PI / 180.0;
@@ -37,30 +37,6 @@ pub(crate) const fn axis(name: &str) -> Option<usize> {
     } else {
         None
     }
-}
-
-/// Returns how much of an SI unit a unit is; `None` for one that is missing or unknown.
-pub(crate) const fn unit(unit: &str, is_rate: bool) -> Option<f64> {
-    let bytes = unit.as_bytes();
-    let known: &[(&[u8], f64)] = if is_rate {
-        &[(b"rad/s", 1.0), (b"deg/s", RADIANS), ("°/s".as_bytes(), RADIANS)]
-    } else {
-        &[
-            ("m/s²".as_bytes(), 1.0),
-            (b"m/s^2", 1.0),
-            (b"m/s2", 1.0),
-            (b"m/s/s", 1.0), // as ArduPilot writes it
-            (b"g", G),
-        ]
-    };
-    let mut at = 0;
-    while at < known.len() {
-        if known[at].0.len() == bytes.len() && has(bytes, known[at].0) {
-            return Some(known[at].1);
-        }
-        at += 1;
-    }
-    None
 }
 
 /// Returns whether the first `end` bytes of a text end with a part, in lower case or not.

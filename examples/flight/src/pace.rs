@@ -16,19 +16,19 @@ pub struct Pace {
     /// The tick of the next sample.
     next: Option<Tick>,
     /// From one sample to the next, in µs.
-    period: u16,
+    period: u32,
 }
 
 impl Pace {
     /// The pace before the first sample, of samples that are `period` µs apart.
-    pub const fn new(period: u16) -> Self {
+    pub const fn new(period: u32) -> Self {
         Self { next: None, period }
     }
 
     /// Takes note of a burst of `held` samples, of which the newest came at `now`. One that is further than two periods from
     /// where it was expected does not follow the one before it.
     pub fn burst(&mut self, now: Tick, held: usize) {
-        let period = i32::from(self.period);
+        let period = self.period as i32;
         let oldest = now.shifted(-(held.saturating_sub(1) as i32 * period));
         self.next = Some(match self.next {
             Some(next) if oldest.since(next).abs() <= 2 * period => {
@@ -47,7 +47,7 @@ impl Pace {
     #[inline]
     pub fn sample(&mut self) -> Tick {
         let tick = self.next.unwrap_or(Tick::from_micros(0));
-        self.next = Some(tick + u32::from(self.period));
+        self.next = Some(tick + self.period);
         tick
     }
 }

@@ -2,6 +2,8 @@
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
+use spikewire::Tick;
+
 /// A count that one task raises and another one looks at.
 #[derive(Debug, Default)]
 pub struct Rounds(AtomicU32);
@@ -15,6 +17,12 @@ impl Rounds {
     /// Counts a round. Only one task may call it, as a Cortex-M0 has no atomic addition.
     pub fn count(&self) {
         self.0.store(self.0.load(Relaxed).wrapping_add(1), Relaxed);
+    }
+
+    /// Returns the time of the last round, for rounds of `period` µs that began at 0: the tick of the samples that it took.
+    pub fn time(&self, period: u32) -> Tick {
+        // The count and the ticks wrap alike: both are taken modulo 2³².
+        Tick::from(self.0.load(Relaxed).wrapping_mul(period))
     }
 
     /// Returns whether there were as many rounds since the last call that returned true, with the same `seen`.

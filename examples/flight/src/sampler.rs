@@ -8,7 +8,7 @@ use crate::Counters;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// From one sample to the next, in µs.
-    pub period: u16,
+    pub period: u32,
     /// Samples left out after each start, while the sensor's filters settle.
     pub settle: u16,
     /// Samples from one keyframe to the next, at least 1; the first sample after a start has one too.
@@ -28,7 +28,7 @@ pub struct Plan {
 impl Plan {
     /// Number of samples a second, rounded down.
     pub const fn samples_a_second(&self) -> u16 {
-        let period = if self.period == 0 { 1 } else { self.period as u32 };
+        let period = if self.period == 0 { 1 } else { self.period };
         let samples = 1_000_000 / period;
         if samples > u16::MAX as u32 { u16::MAX } else { samples as u16 }
     }
@@ -189,7 +189,7 @@ where
     fn count_missed(&mut self, edge: Tick) -> u32 {
         let mut missed = 0;
         if self.has_come {
-            let period = u32::from(self.plan.period).max(1);
+            let period = self.plan.period.max(1);
             let passed = edge.since(self.last).max(0).unsigned_abs();
             let periods = (passed + period / 2) / period;
             missed = periods.saturating_sub(1);

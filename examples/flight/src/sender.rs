@@ -2,7 +2,7 @@
 
 use embedded_io_async::Write;
 use spikewire::{
-    Bank, Source,
+    Bank, Source, Tick,
     link::{Coding, MAX_FRAME, Session, Transmitter},
 };
 
@@ -24,8 +24,7 @@ impl Sender {
     /// A sender for the sensor's channels, before the first frame of this session.
     pub fn new<I: Imu>(session: Session) -> Self {
         // The sensor's clock is not ours: its samples come a few µs early or late.
-        let coding =
-            Coding::for_channels(CHANNELS as u16, I::PLAN.period.into()).with_jitter_bits(4);
+        let coding = Coding::for_channels(CHANNELS as u16, I::PLAN.period).with_jitter_bits(4);
         let bank = Bank::<_, CHANNELS>::per_channel(I::SCHEMES);
         Self::of(Transmitter::new(coding, session).with_fingerprint(bank.fingerprint()))
     }
@@ -33,6 +32,12 @@ impl Sender {
     /// A sender of these frames, such as those of a flight's module.
     pub const fn of(transmitter: Transmitter) -> Self {
         Self { transmitter, frame: [0; MAX_FRAME], bytes: 0, failed: 0 }
+    }
+
+    /// Says that all items before this time are in the source, so that events that wait for others may go. Needed at each
+    /// turn if the flight's file has `gathering`.
+    pub fn observe(&mut self, now: Tick) {
+        self.transmitter.observe(now);
     }
 
     /// Sends all items that the source has, and lets the port send what it keeps.

@@ -79,7 +79,7 @@ pub struct Station<I, T: Schemes<N>, const N: usize> {
     sensor: I,
     channels: Channels<N>,
     sampler: Sampler<T, N>,
-    period: u16,
+    period: u32,
     /// Periods since the start of the firmware.
     periods: u64,
     /// Periods to pass before the next step.
@@ -99,7 +99,7 @@ impl<I: Registers, T: Schemes<N, Scheme: Start<Sample: OfCounts>>, const N: usiz
         sensor: I,
         channels: Channels<N>,
         bank: Bank<T, N>,
-        period: u16,
+        period: u32,
         keyframe_every: u32,
     ) -> Self {
         let keyframe_every =
@@ -108,7 +108,7 @@ impl<I: Registers, T: Schemes<N, Scheme: Start<Sample: OfCounts>>, const N: usiz
             period,
             settle: 0,
             keyframe_every,
-            patience: period as u32 * MOST_ALIKE as u32,
+            patience: period * MOST_ALIKE as u32,
             burst: 1,
             most_alike: MOST_ALIKE,
             most_spikes: 0, // the scheme's own matter
@@ -211,6 +211,6 @@ impl<I: Registers, T: Schemes<N, Scheme: Start<Sample: OfCounts>>, const N: usiz
 
     /// As many periods as last this long at least. The current one may be over at once.
     fn periods_of(&self, micros: u32) -> u32 {
-        micros.div_ceil(u32::from(self.period).max(1))
+        micros.div_ceil(self.period.max(1))
     }
 }

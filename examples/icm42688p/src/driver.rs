@@ -79,7 +79,7 @@ impl<D: SpiDevice> Imu for Icm42688p<'_, D> {
 
     /// The start has let the sensor settle. Ten milliseconds of silence, or of equal samples, are no accident.
     const PLAN: Plan = Plan {
-        period: (1_000_000 / SAMPLE_RATE as u32) as u16,
+        period: 1_000_000 / SAMPLE_RATE as u32,
         settle: 0,
         keyframe_every: SAMPLE_RATE / flight::KEYFRAMES,
         patience: 10_000,

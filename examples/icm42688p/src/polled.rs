@@ -33,7 +33,7 @@ pub struct Polled<D> {
 
 impl<D: SpiDevice> Polled<D> {
     /// A sensor that was not started, for a flight with this period in µs.
-    pub const fn new(device: D, period: u16) -> Self {
+    pub const fn new(device: D, period: u32) -> Self {
         let [rate, bandwidth] = codes(period);
         let [clock, int, power] = POLLED;
         // Power comes last, as no register may be written for 200 µs after it.
@@ -59,8 +59,7 @@ impl<D: SpiDevice> Polled<D> {
 }
 
 /// The codes of rate and bandwidth for a period.
-const fn codes(period: u16) -> [u8; 2] {
-    let period = period as u32;
+const fn codes(period: u32) -> [u8; 2] {
     let (mut rate, mut at) = (RATES[RATES.len() - 1], RATES.len());
     while at > 0 {
         at -= 1;
@@ -136,13 +135,13 @@ mod tests {
 
     #[test]
     fn the_sensor_samples_twice_a_period_behind_half_of_the_rate() {
-        for period in 250..=u16::MAX {
+        for period in 250..=65_535 {
             let [rate, divider] = codes(period);
             let (own, _) = RATES.into_iter().find(|one| one.1 == rate).unwrap();
             let (by, _) = DIVIDERS.into_iter().find(|one| one.1 == divider).unwrap();
-            assert!(2 * own <= u32::from(period), "{period}");
+            assert!(2 * own <= period, "{period}");
             let hz = 1_000_000 / (own * by);
-            assert!(hz * 2 * u32::from(period) <= 1_000_000 || divider == 7, "{period}: {hz} Hz");
+            assert!(hz * 2 * period <= 1_000_000 || divider == 7, "{period}: {hz} Hz");
         }
         assert_eq!(codes(5038), [6, 5]); // 1 kHz, 62.5 Hz
         assert_eq!(codes(125), [3, 1]);

@@ -30,6 +30,7 @@ fn run(out: &mut impl Write) -> fmt::Result {
             bank.keyframe_into(tick, &EVENTS);
         }
         // In main, and at the other end:
+        transmitter.observe(tick);
         while let Ok(Some(frame)) = transmitter.next_frame(&mut events, &mut buffer) {
             (frames, bytes) = (frames + 1, bytes + frame.len());
             let mut input = frame;

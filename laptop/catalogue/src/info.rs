@@ -53,6 +53,12 @@ impl Info {
         matches!(self.steps, StepErrors::Drifting)
     }
 
+    /// Returns whether the encoder has a baseline that a spike moves by a step, so that a start puts the baseline on a
+    /// grid.
+    pub const fn has_baseline(&self) -> bool {
+        matches!(self.steps, StepErrors::Held)
+    }
+
     /// Returns the parameter of this name.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|own| own.name == name)

@@ -10,7 +10,7 @@ mod report;
 mod stop;
 mod words;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use commands::{capture, convert, decode, encode, info, listen, score, signal};
 use std::process::ExitCode;
 
@@ -24,23 +24,64 @@ struct Program {
 
 #[derive(Subcommand)]
 enum Command {
+    Advise(commands::advise::Advise),
+    Score(score::Score),
+    Tune(commands::tune::Tune),
     Encode(encode::Encode),
     Decode(decode::Decode),
-    Listen(listen::Listen),
-    Convert(convert::Convert),
-    Dataset(commands::dataset::Dataset),
-    Capture(capture::Capture),
-    Score(score::Score),
-    Bench(commands::bench::Bench),
-    Plot(commands::plot::Plot),
-    Network(commands::network::Network),
     Info(info::Info),
-    Signal(signal::Signal),
-    Tune(commands::tune::Tune),
-    Frames(commands::frames::Frames),
-    Advise(commands::advise::Advise),
+    Plot(commands::plot::Plot),
+    Dataset(commands::dataset::Dataset),
     Emit(commands::emit::Emit),
+    Listen(listen::Listen),
+    Capture(capture::Capture),
+    Convert(convert::Convert),
+    Frames(commands::frames::Frames),
+    Network(commands::network::Network),
+    Signal(signal::Signal),
+    Bench(commands::bench::Bench),
 }
+
+/// The first page of the help: the commands by task, as clap has no groups of commands.
+const HELP: &str = "\
+{about-with-newline}
+{usage-heading} {usage}
+
+A scheme for a log:
+  advise   Describe a log, and advise a scheme and parameters for each channel
+  score    Count a scheme's spikes, and measure the error of what they decode to
+  tune     Search a scheme's parameters for a goal
+  encode   Encode channels of a recording as spikes
+  decode   Decode spikes to values
+
+Recordings:
+  info     List the content of logs and tables
+  plot     Draw a signal, its spikes and what they decode to
+  dataset  Encode many logs to Parquet files, with a manifest
+
+The drone and its link:
+  emit     Write source code for firmware from a flight file
+  listen   Read the events that a board sends, and decode them
+  capture  Read a board's RTT channel through a debug probe
+  convert  Convert events from one format to another
+
+Cameras and networks:
+  frames   Convert a video to the events of its pixels
+  network  Convert a trained network for a chip or the flight controller
+
+The paper, Dupeyroux et al. (2022):
+  signal   Write the test signal of its benchmark
+  bench    Reproduce its tables, cell by cell
+
+Options:
+{options}
+
+Examples:
+  spikewire advise flight.csv --loop-bandwidth 4 -o flight.toml
+  spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv
+
+`spikewire COMMAND -h` lists a command's options, and `--help` explains them.
+";
 
 /// Exit status of a failed command; clap exits with the same status if options are wrong.
 const FAILURE: u8 = 2;
@@ -48,7 +89,11 @@ const FAILURE: u8 = 2;
 /// Parses the process's arguments, runs the command, and returns the exit status: 0 on success, 2 after an error, which
 /// is printed on standard error.
 pub fn run() -> ExitCode {
-    let command = Program::parse().command;
+    let mut matches = Program::command().help_template(HELP).get_matches();
+    let command = match Program::from_arg_matches_mut(&mut matches) {
+        Ok(program) => program.command,
+        Err(error) => error.exit(),
+    };
     let done = stop::handle().and_then(|()| match command {
         Command::Encode(options) => encode::run(&options),
         Command::Decode(options) => decode::run(&options),

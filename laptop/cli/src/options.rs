@@ -11,6 +11,7 @@ use lab::output::Output;
 use lab::scheme::Scheme;
 use std::fmt::{Display, Write as _};
 use std::io::Write as _;
+use std::path::Path;
 use std::str::FromStr;
 
 /// Options that choose the scheme, its sample type and its parameters. Values that are not on the command line are
@@ -263,6 +264,24 @@ fn meaning(parameter: &Parameter) -> String {
         let _ = write!(text, "; {default} unless given");
     }
     text
+}
+
+/// Checks that the name of an output fits what is written: it ends in `ending` or `.txt`, or has no ending. A device may
+/// have any name.
+///
+/// # Errors
+/// Returns an error that says `what` is written if the name has another ending.
+pub(crate) fn check_ending(output: Option<&Path>, ending: &str, what: &str) -> Checked<()> {
+    let Some(path) = output else { return Ok(()) };
+    let Some(own) = path.extension() else { return Ok(()) };
+    let is_device = path.metadata().is_ok_and(|data| !data.is_file());
+    if is_device || [ending, "txt"].iter().any(|ending| own.eq_ignore_ascii_case(ending)) {
+        return Ok(());
+    }
+    let (path, own) = (path.display(), own.display());
+    bail!(
+        "{path}: {what} is written, and no .{own}; the name ends in .{ending} or .txt, or has no ending"
+    )
 }
 
 /// Writes a command's result to standard output.

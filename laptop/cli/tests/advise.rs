@@ -117,12 +117,15 @@ fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
         let flights = &flown["banks"][scheme];
         let cells = flights["everywhere"].as_object().unwrap().values().chain([&flights["here"]]);
         assert!(cells.clone().all(|cell| cell["lost"].as_array().unwrap().is_empty()), "{scheme}");
-        // The interval of keyframes is that of the simulated flights, at 500 samples a second.
-        assert_eq!(
-            bank["keyframe_every"],
-            flights["keyframe_ms"].as_u64().unwrap() / 2,
-            "{scheme}"
-        );
+        // The interval of keyframes is that of the simulated flights, at 500 samples a second, or 500 ms if the code heals.
+        let heals = ["sf", "sod", "asf"].contains(&scheme);
+        let apart = if heals { 500 } else { flights["keyframe_ms"].as_u64().unwrap() };
+        assert_eq!(bank["keyframe_every"], apart / 2, "{scheme}");
+        // The samples of both channels in f32, in frames with 4 bytes beside them.
+        let rivals = bank["rivals"].as_array().unwrap();
+        assert_eq!(rivals[0]["bytes_per_second"], 6000.0, "{scheme}");
+        assert_eq!(rivals[1]["bytes_per_second"], 1500.0, "{scheme}");
+        assert_eq!(rivals.len(), if heals { 3 } else { 2 }, "{scheme}");
     }
     // Turn rates are coded as in the flights, although a fifth of their deviation is much more.
     let threshold = report["channels"][0]["reaching"].as_array().unwrap().iter();
@@ -149,6 +152,13 @@ fn a_bank_has_one_scheme_that_flies_and_its_file_is_read_by_both_ends() {
     let written = std::fs::read_to_string(&path).unwrap();
     let scheme = format!("scheme = \"{}\"\n", banks[0]["scheme"].as_str().unwrap());
     assert!(written.contains(&scheme) && written.contains("period = 2000"), "{written}");
+    let heals = ["sf", "sod", "asf"].contains(&banks[0]["scheme"].as_str().unwrap());
+    assert_eq!(written.contains("step_bits = 4\n"), heals, "{written}");
+    assert_eq!(written.contains("start = 0"), heals, "{written}");
+    assert!(
+        written.contains("# in frames of 4 bytes and the values, samples would take 6000"),
+        "{written}"
+    );
     let spikes = ran!("encode --flight {} {log}", path.display()).output;
     assert!(
         spikes.contains("# column=gyro_x,accel_z\n") || spikes.contains("gyro_x,accel_z"),
@@ -387,19 +397,20 @@ fn a_search_that_is_cut_short_says_so_in_the_file() {
     assert!(written.contains("# ! the search was cut short"), "{written}");
 }
 
-/// Ten samples a second are described and advised on, although no frame of the link can tell their period.
+/// A sample each 20 seconds is described and advised on, although no frame of the link can tell their period.
 #[test]
 fn a_slow_log_is_described() {
     let row =
-        |sample: u32| format!("{},{}\n", f64::from(sample) * 0.1, (f64::from(sample) / 6.0).sin());
+        |sample: u32| format!("{},{}\n", f64::from(sample) * 20.0, (f64::from(sample) / 6.0).sin());
     let log = "time,x\n".to_owned() + &(0..600).map(row).collect::<String>();
     let (directory, log) = file("log.csv", log);
-    let page = ran!("advise {log} --evaluations 20").output;
-    for words in ["600 samples in 59.9 s, 10 a second", "take ", "- bytes a second on the link"] {
+    let page = ran!("advise {log} --time-unit s --evaluations 20").output;
+    for words in ["600 samples in 11980 s, 0.05 a second", "take ", "- bytes a second on the link"]
+    {
         assert!(page.contains(words), "{words}: {page}");
     }
     let path = directory.path().join("flight.toml");
-    let asked = format!("advise {log} --evaluations 20 -o {}", path.display());
-    refused(&asked, "", &["no flight is written: ", "10 has no period of 1 µs to 65 535 µs"]);
+    let asked = format!("advise {log} --time-unit s --evaluations 20 -o {}", path.display());
+    refused(&asked, "", &["no flight is written: ", "0.05 has no period of 1 µs to 16 777 215 µs"]);
     assert!(!path.exists());
 }

@@ -220,6 +220,46 @@ fn evt21_is_read_as_what_its_header_says() {
         assert_eq!(rows(&convert("evt21", "csv", &file).output), table, "{order}");
     }
     let file = [header("little").as_bytes(), &little].concat();
+    // Without the word in the header, the words show the order of their bytes, or the user says it.
+    let header_only = header("little").replace(";endianness=little", "");
+    for (name, words) in [("little", &little), ("legacy", &halves)] {
+        let file = [header_only.as_bytes(), words].concat();
+        let there = convert("evt21", "csv", &file);
+        assert_eq!(rows(&there.output), table, "{name}");
+        let said = format!("by the words it is `{name}`");
+        assert!(there.stderr.contains(&said), "{}", there.stderr);
+        let legacy = u8::from(name == "legacy");
+        let there = convert(&format!("evt21,legacy={legacy}"), "csv", &file);
+        assert_eq!(rows(&there.output), table, "{name}");
+        assert!(!there.stderr.contains("by the words"), "{}", there.stderr);
+    }
+    // An event before any time: both orders can be, and neither begins with the time.
+    for words in [&little, &halves] {
+        let file = [header_only.as_bytes(), &words[8..]].concat();
+        let (_directory, path) = common::file("x.raw", file);
+        let said = ["the words do not show it", "`evt21,legacy=1` (IMX636)"];
+        refused(&format!("convert --from evt21 --to csv {path}"), "", &said);
+    }
+    // In more than a few words, only one order can be, wherever the stream begins.
+    let mut state = 1_u32;
+    let mut many: Vec<u64> = Vec::new();
+    for time in 0..200_u64 {
+        for _ in 0..5 {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let (pixel, kind) = (1_u64 << (state >> 27), u64::from(state >> 9 & 1));
+            let (x, y) = (u64::from(state >> 12 & 7) * 32, u64::from(state >> 15 & 255));
+            many.push(kind << 60 | x << 43 | y << 32 | pixel);
+        }
+        many.push(8 << 60 | time << 32);
+    }
+    let little: Vec<u8> = many.iter().flat_map(|word| word.to_le_bytes()).collect();
+    let halves: Vec<u8> = many.iter().flat_map(|word| word.rotate_left(32).to_le_bytes()).collect();
+    let events = rows(&convert("evt21,legacy=0", "csv", &little).output);
+    assert!(events.lines().count() > 900, "{}", events.lines().count());
+    for words in [&little, &halves] {
+        assert_eq!(rows(&convert("evt21", "csv", words).output), events);
+    }
+
     let text = |bytes: &[u8]| bytes.to_vec();
     for (format, file, said) in [
         ("evt2", text(&file), "the header says EVT 2.1, which the format `evt21` reads"),

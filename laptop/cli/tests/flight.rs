@@ -6,6 +6,7 @@ mod common;
 use common::{file, flight_logs, good, ran, refused, spikewire};
 use spikewire::link::{MAX_FRAME, Session};
 use spikewire::{FromItems, Item, Put, Tick};
+use std::collections::VecDeque;
 use std::fs;
 
 include!("../../flight/tests/flights/grf_slots.rs");
@@ -159,6 +160,7 @@ macro_rules! heard_by_the_laptop {
                 let (mut bank, mut transmitter) = (flight::BANK, flight::transmitter(Session::counted(3)));
                 let (mut reader, mut receiver) = (Reader::<MAX_FRAME>::new(), flight::receiver());
                 let (mut bytes, mut items, mut buffer) = (Vec::new(), Vec::new(), [0; MAX_FRAME]);
+                let mut waiting = VecDeque::new();
                 let mut end = Tick::from_micros(0);
                 for sample in 0..SAMPLES {
                     let tick = Tick::from_micros(sample as u64 * u64::from(flight::PERIOD));
@@ -169,7 +171,10 @@ macro_rules! heard_by_the_laptop {
                     if sample % flight::KEYFRAME_EVERY as usize == 0 {
                         bank.keyframe_into(tick, Items(&mut items));
                     }
-                    let mut source = FromItems(items.drain(..));
+                    // Items that wait for others stay, as in the queue of a firmware.
+                    waiting.extend(items.drain(..));
+                    transmitter.observe(tick);
+                    let mut source = FromItems(std::iter::from_fn(|| waiting.pop_front()));
                     while let Some(frame) = transmitter.next_frame(&mut source, &mut buffer).unwrap() {
                         bytes.extend_from_slice(frame);
                         let mut input = frame;
@@ -186,7 +191,9 @@ macro_rules! heard_by_the_laptop {
                 let (_directory, path) = file("captured.bytes", &bytes);
                 let toml = format!("../flight/tests/flights/{}.toml", stringify!($name));
                 let heard = ran!("listen {path} --flight {toml}");
-                assert!(!heard.output.contains(",estimate"), "{}", heard.stderr);
+                // A code that starts from a value may have events before its first keyframe.
+                let first = heard.output.find(",keyframe").unwrap_or_default();
+                assert!(!heard.output[first..].contains(",estimate"), "{}", heard.stderr);
                 let rows: Vec<Vec<&str>> = heard.output.lines().skip(1).map(|line| line.split(',').collect()).collect();
                 for channel in 0..flight::CHANNELS {
                     let row = rows.iter().rev().find(|row| row[1] == channel.to_string()).unwrap();
@@ -199,7 +206,7 @@ macro_rules! heard_by_the_laptop {
     )*};
 }
 
-heard_by_the_laptop! { sod sod_i32 sf_q2_14 asf_q16_16 }
+heard_by_the_laptop! { sod sod_i32 sf_q2_14 asf_q16_16 healing }
 
 /// Two senders on one line are reported as such: the reader follows one of them, and leaves out the other's frames.
 #[test]

@@ -74,3 +74,24 @@ fn a_message_is_short_though_names_are_many() {
         ran.stderr
     );
 }
+
+/// A name that ends as another kind of file is refused before the work.
+#[test]
+fn a_name_with_the_ending_of_another_kind_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| directory.path().join(name).display().to_string();
+    let flight = common::flight("hexarotor.csv");
+    let tune = format!("tune {flight} --channel gyro_x --scheme sf --max-rmse 0.1");
+    for (command, ending, what) in [
+        (format!("advise {flight}"), "svg", "a flight file is written, and no .svg"),
+        (format!("{tune} --emit toml"), "csv", "a file of parameters is written, and no .csv"),
+        (format!("{tune} --emit flight"), "json", "a flight file is written, and no .json"),
+        (format!("{tune} --emit rust"), "toml", "Rust is written, and no .toml"),
+        ("emit rust --flight flight.toml".to_owned(), "c", "Rust is written, and no .c"),
+        (format!("network x.nir --scheme sf {flight}"), "toml", "Rust is written, and no .toml"),
+    ] {
+        let output = path(&format!("x.{ending}"));
+        refused(&format!("{command} -o {output}"), "", &[what, &output]);
+    }
+    assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
+}

@@ -65,7 +65,11 @@ fn packets_have_the_rate_of_their_samples() {
     let words = ["800.00 Hz by samples through length", "--rate says how many a second are taken"];
     let advise = "advise --evaluations 3 --max-rmse 0.1";
     refused(&format!("{advise} {table}"), "", &words);
-    assert!(ran!("{advise} --rate 800 {table}").output.contains("800"));
+    let advice = ran!("{advise} --rate 800 {table}").output;
+    assert!(
+        advice.contains("800 a second, jitter 3.") && advice.contains(" ms, 0 gaps"),
+        "{advice}"
+    );
     let tune = "tune --scheme sf --max-rmse 0.1 --evaluations 3 --emit flight";
     refused(&format!("{tune} {table}"), "", &words);
     assert!(ran!("{tune} --rate 800 {table}").output.contains("period = 1250 "));
@@ -160,9 +164,114 @@ fn headers_are_found_below_other_lines() {
     assert!(ran.output.contains("20 rows, 0.095 s, 200.00 Hz"), "{}", ran.output);
     let ran = good("info --header 1 -", &format!("# t_ms x y\n{}", rows.replace(',', " ")));
     assert!(ran.output.contains("\n  x, y\n"), "{}", ran.output);
-    // A comment that names more columns than there are.
-    let words = ["line 2 has 3 columns where the header has 4"];
-    refused("info --header 1 -", &format!("# t_ms,x,y,z\n{rows}"), &words);
+    // A comment that names more columns than there are, or fewer.
+    for (names, rest) in [
+        ("t_ms,x,y,z", "line 1 has 4 names for 3 columns; the first 3 are taken"),
+        (
+            "t_ms,x",
+            "line 1 has 2 names for 3 columns; the columns behind them are called by their number",
+        ),
+    ] {
+        let table = format!("# {names}\n{rows}");
+        let ran = good("info -", &table);
+        let words = "the comment in line 1 may hold other names than 3; --header 1 takes them";
+        assert!(
+            ran.output.contains(words) && ran.output.contains("\n  1, 2, 3\n"),
+            "{}",
+            ran.output
+        );
+        let words =
+            ["no column `x`; there are 1, 2, 3; --header 1 takes the names of the comment there"];
+        refused("score --scheme sf --threshold 1 --column x -", &table, &words);
+        let ran = good("info --header 1 -", &table);
+        assert!(ran.output.contains(rest) && ran.output.contains("200.00 Hz\n"), "{}", ran.output);
+    }
+    // One whose names are surely those of the columns, however they are separated.
+    for (comment, names) in [
+        ("# t_ms x y", "x, y"),
+        ("# t (ms) x (m) y (m)", "x (m), y (m)"),
+        ("# Columns: t_ms, x, y", "x, y"),
+        ("# fields: t_ms x y", "x, y"),
+        ("// t_ms, x, y", "x, y"),
+    ] {
+        for delimiter in [",", " ", ";"] {
+            let table = format!("{comment}\n{}", rows.replace(',', delimiter));
+            let ran = good("info -", &table);
+            let is_named = ran.output.contains(&format!("\n  {names}\n"));
+            assert!(is_named && ran.output.contains("200.00 Hz"), "{table:.60}: {}", ran.output);
+        }
+    }
+    // Words of a sentence are no names.
+    assert!(good("info -", &format!("# made by me\n{rows}")).output.contains("\n  1, 2, 3\n"));
+}
+
+#[test]
+fn rows_longer_than_the_header_are_named_with_the_line_to_type() {
+    let rows = (0..20).map(|row| format!("{},{}\n", row * 5, row % 3)).collect::<Vec<_>>().concat();
+    // All rows: only the user knows which column has no name.
+    let long = rows.replace('\n', ",7\n");
+    let table = format!("t_ms,x\n{long}");
+    let words = "line 2 has 3 columns where the header has 2; --header 1 takes its names for the first columns";
+    refused("info -", &table, &[words]);
+    let ran = good("info --header 1 -", &table);
+    assert!(
+        ran.output.contains("\n  x, 3\n") && ran.output.contains("200.00 Hz"),
+        "{}",
+        ran.output
+    );
+    // A few rows: they are left out if the user says so.
+    let table = format!("t_ms,x\n{}", rows.replace("25,2\n", "25,2,9\n").replace("45,0\n", "45\n"));
+    let words =
+        "line 7 has 3 columns where the header has 2; --skip-non-finite leaves such lines out";
+    refused("info -", &table, &[words]);
+    let score = "score --scheme sf --threshold 1";
+    refused(&format!("{score} -"), &table, &[words]);
+    let ran = good(&format!("{score} --skip-non-finite --json -"), &table).log();
+    assert_eq!(ran["schemes"][0]["samples"], Value::from(18));
+    assert!(is_noted(
+        &ran,
+        "2 lines have another number of columns than the header and are left out, the first in line 7"
+    ));
+}
+
+#[test]
+fn records_of_a_flysight_2_are_read_by_their_kind() {
+    let mut log =
+        "$FLYS,1\n$VAR,FIRMWARE_VER,v2023.09.22\n$COL,BARO,time,pressure\n$COL,IMU,time,wx,wy\n\
+                   $UNIT,BARO,s,Pa\n$UNIT,IMU,s,deg/s,deg/s\n$DATA\n"
+            .to_owned();
+    for row in 0..400 {
+        let time = f64::from(row) * 0.01;
+        log += &format!("$IMU,{time:.3},{},{}\n", row % 7, row % 5);
+        if row % 10 == 0 {
+            log += &format!("$BARO,{time:.3},{}\n", 101_325 - row);
+        }
+    }
+    let (_directory, path) = file("SENSOR.CSV", &log);
+    let imu = info(&path);
+    assert_eq!(columns(&imu), ["wx (deg/s)", "wy (deg/s)"]);
+    assert_eq!((&imu["samples"], &imu["rate"]), (&Value::from(400), &Value::from(100.0)));
+    assert!(is_noted(
+        &imu,
+        "a file of a FlySight 2: records IMU of BARO, IMU; --topic chooses others"
+    ));
+    let wy = values("--column wy --min 0 --max 8", &path);
+    assert!((0..400).all(|row| (wy[row] - (row % 5) as f64).abs() < 0.01), "{wy:?}");
+    let baro = ran!("encode --scheme sf --threshold 1 --topic BARO --column pressure {path}");
+    assert!(baro.output.contains("# rate=10\n"), "{}", baro.stderr);
+    refused(
+        &format!("encode --scheme sf --threshold 1 --topic GNSS --column lat {path}"),
+        "",
+        &["no topic `GNSS`; there are BARO, IMU"],
+    );
+    // An error names the line in the file.
+    let odd = log.replace("$IMU,0.030,3,3\n", "$IMU,0.030,3,three\n");
+    refused("encode --scheme sf --threshold 1 --column wy -", &odd, &["line 12", "`three`"]);
+    refused(
+        "encode --scheme sf --threshold 1 --topic IMU --column x -",
+        "x\n1\n",
+        &["a CSV table takes no --topic"],
+    );
 }
 
 #[test]
@@ -177,7 +286,6 @@ fn tables_as_loggers_write_them() {
     assert!(ran.output.contains("20 rows") && ran.output.contains("3 lines below the header"));
     let long = format!("t_ms,x\n{}", rows.replace('\n', ",\n"));
     assert!(good("info -", &long).output.contains("20 rows"));
-    refused("info -", "t_ms,x\n0,1\n5,2,3\n", &["line 3 has 3 columns where the header has 2"]);
     for missing in ["1.#QNAN", "-1.#IND", "-nan(ind)", "?", "--"] {
         let ran = good("info -", &format!("t_ms,x\n{rows}100,{missing}\n"));
         let words = "x: missing or not finite in 1 row";
@@ -351,4 +459,55 @@ fn a_bag_with_zeros_before_its_index_is_read() {
     let log = info(&log);
     assert_eq!(topic(&log, "/imu")["samples"], Value::from(100));
     assert!(is_noted(&log, "4096 zeros where a record should begin"), "{}", log["notes"]);
+}
+
+/// The codes that spread a range over neurons, times or chances clamp what is outside of it, or are silent there.
+#[test]
+fn samples_outside_the_range_are_reported_once_with_their_share() {
+    let is_ranged = |info: &&catalogue::Info| {
+        let has = |name| info.parameters.iter().any(|own| own.name == name);
+        has("min") && has("max")
+    };
+    let ranged: Vec<_> = catalogue::INFO.iter().filter(is_ranged).collect();
+    assert_eq!(ranged.len(), 14);
+    let rows = |values: [i32; 4]| {
+        "x\n".to_owned() + &values.map(|value| format!("{value}\n")).concat().repeat(25)
+    };
+    let (directory, outside) = file("outside.csv", rows([150, 0, 50, 100]));
+    let (_inside, inside) = file("inside.csv", rows([-100, 0, 50, 100]));
+    let picture = directory.path().join("x.svg").display().to_string();
+    let words = "25 of 100 samples, 25 %, lie outside the code's range, min -100 to max 100";
+    for info in ranged {
+        let options = format!("--scheme {} --paper --min -100 --max 100", info.name);
+        for (command, output) in [("encode", "-"), ("score", ""), ("plot", &*picture)] {
+            let output = if output.is_empty() { String::new() } else { format!("-o {output}") };
+            let ran = ran!("{command} {options} {outside} {output}");
+            let count = ran.stderr.matches("lie outside").count();
+            assert!(
+                ran.stderr.contains(words) && count == 1,
+                "{command} {options}: {}",
+                ran.stderr
+            );
+            let ran = ran!("{command} {options} {inside} {output}");
+            assert!(!ran.stderr.contains("lie outside"), "{command} {options}: {}", ran.stderr);
+        }
+        let set = directory.path().join(info.name).display().to_string();
+        ran!("dataset {options} --test 0 {outside} -o {set}");
+        let manifest = std::fs::read_to_string(format!("{set}/manifest.jsonl")).unwrap();
+        assert!(manifest.contains(words), "{manifest}");
+    }
+}
+
+/// Networks as snnTorch exports them: with weights of half precision, and with neurons that keep all of their potential.
+#[test]
+fn networks_of_half_precision_are_read_and_beta_1_is_explained() {
+    let (_directory, steps) = file("steps.txt", "0\n1 2\n\n3\n0 1\n2 3\n".repeat(20));
+    let network = |name: &str| {
+        let of = path(name);
+        format!("network {of} {steps} --as snntorch --reset to-value --on controller")
+    };
+    let ran = ran!("{}", network("half.nir"));
+    assert!(ran.output.contains("-0.178"), "{}", ran.output);
+    let words = ["`tau` holds inf, as snnTorch exports beta=1", "export it as IF"];
+    refused(&network("beta_1.nir"), "", &words);
 }

@@ -60,8 +60,10 @@ pub enum FlightErrorKind {
     },
     /// A parameter that the scheme needs is missing.
     Missing,
-    /// The parameter `start` is given, but every channel of a flight starts from its first sample.
+    /// The parameter `start` is given, but the scheme has no baseline, and starts from its first samples.
     NoStart,
+    /// The setting `step_bits` is given, but the scheme has no steps.
+    NoSteps,
     /// Two channels have the same name.
     Twice,
     /// Two channels differ in a parameter that is not a number, such as a count or a filter. A
@@ -74,9 +76,11 @@ pub enum FlightErrorKind {
     /// The period is so short that it is likely given in ms.
     Period {
         /// Period in the file.
-        given: u16,
+        given: u32,
         /// Shortest period allowed, in µs.
-        min: u16,
+        min: u32,
+        /// Longest period allowed, in µs.
+        max: u32,
     },
     /// The unit is written in a way that is not read here.
     Unit {
@@ -164,16 +168,21 @@ impl fmt::Display for FlightErrorKind {
             }
             Self::Range { given, min, max } => write!(f, "{given} must be in {min}..={max}"),
             Self::Missing => f.write_str("is missing"),
-            Self::NoStart => f.write_str("has no place here: a bank starts from its first samples"),
+            Self::NoStart => {
+                f.write_str("has no place here: only sf, sod and asf have a baseline to start from")
+            }
+            Self::NoSteps => {
+                f.write_str("has no place here: the scheme has no steps whose number could be sent")
+            }
             Self::Twice => f.write_str("names two channels"),
             Self::NotOneBank => f.write_str(
                 "differs from the first channel in more than numbers: no bank holds both",
             ),
             Self::Quoted => f.write_str("must be a number, without quotation marks"),
-            Self::Period { given, min } => write!(
+            Self::Period { given, min, max } => write!(
                 f,
-                "{given} is in µs, {min} to 65535; {given} ms are {}",
-                u32::from(*given) * 1000
+                "{given} is in µs, {min} to {max}; {given} ms are {}",
+                u64::from(*given) * 1000
             ),
             Self::Unit { given, meant } => write!(f, "`{given}` is written `{meant}`"),
             Self::NoUnit { name } => write!(

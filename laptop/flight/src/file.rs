@@ -5,16 +5,21 @@
 //! | `version` | 1 | required |
 //! | `scheme` | a scheme's short name, such as `sod` | required |
 //! | `sample` | `f32`, `i16`, `i32` or fixed point such as `q8.8` | `f32` |
-//! | `period` | time from one sample to the next in µs, 30 to 65 535 | required |
+//! | `period` | time from one sample to the next in µs, 30 to 16 777 215 | required |
 //! | `keyframe_every` | samples from one keyframe or heartbeat to the next | the number of samples in 50 ms |
 //! | `clock_ppm` | tolerance of the time between samples, in millionths of `period`, 0 to 100 000 | 20 000, for a sensor's own oscillator |
+//! | `step_bits` | low bits of a channel's step number in a frame, 0 to 4: with 4, step codes heal at the next event after a loss of 7 net steps or fewer | 0 |
+//! | `gathering` | longest time that events wait for others in µs, 0 to 1 000 000: fewer frames, later values | 0 |
+//! | `full_every` | time from one full frame to the next in µs, 0 to 10 000 000; a receiver that joins waits for one | 524 288 |
 //! | `parameters` | parameters that all channels share | none |
 //! | `filter` | `kind` (`low-pass`, `first-order`, `notch`), `corner` or `centre` in Hz, a notch's `q` | none |
 //! | `[[channel]]` | `name`; `source`, the column or `topic.field` in a recording; `unit`; `counts` in one unit; `parameters` of this channel alone | `source`: the name; `unit`: as the end of a name says, such as `_dps`; `counts`: 1 |
 //!
 //! Parameters are in units of samples, which are counts if a channel has `counts`. Numbers are written as numbers, not as
 //! texts. A path of a parameter, such as that of a file of taps, is relative to the flight file. Frames are those of the
-//! link, version 3.
+//! link, version 4. `start` among the parameters of `sf`, `sod` and `asf` is the baseline before the first sample: with 0, all baselines are
+//! multiples of the threshold. The sender alone decides `step_bits`, `gathering`, `full_every` and `start`, and its frames say
+//! what a receiver must know of them, so that none of the four is a part of the fingerprint.
 
 use crate::keys::Keys;
 use crate::{Channel, Filter, Flight, FlightError, FlightErrorKind, Parts, escaped};
@@ -24,7 +29,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
-use std::num::NonZeroU16;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
@@ -46,9 +51,14 @@ struct File {
     version: Option<u32>,
     scheme: Option<String>,
     sample: Option<String>,
-    period: Option<NonZeroU16>,
+    period: Option<NonZeroU32>,
     keyframe_every: Option<u32>,
     clock_ppm: Option<u32>,
+    #[serde(default)]
+    step_bits: u8,
+    #[serde(default)]
+    gathering: u32,
+    full_every: Option<u32>,
     filter: Option<FileFilter>,
     #[serde(default)]
     parameters: Given,
@@ -126,6 +136,15 @@ impl Flight {
              clock_ppm = {}",
             self.scheme.name, self.sample, self.period, self.keyframe_every, self.clock_ppm
         );
+        if self.step_bits > 0 {
+            let _ = writeln!(text, "step_bits = {}", self.step_bits);
+        }
+        if self.gathering > 0 {
+            let _ = writeln!(text, "gathering = {} # µs", self.gathering);
+        }
+        if self.full_every != Parts::FULL_EVERY {
+            let _ = writeln!(text, "full_every = {} # µs", self.full_every);
+        }
         if let Some(filter) = self.filter {
             // Serializing a table of strings and numbers cannot fail.
             let table = toml::Value::try_from(filter).map(|table| table.to_string());
@@ -180,7 +199,7 @@ fn parts(
         Some(name) => name.parse().map_err(|error| FlightError::refused("sample", error))?,
     };
     let period = file.period.ok_or_else(|| missing("period"))?;
-    let usual = (KEYFRAMES / u32::from(period.get())).max(1);
+    let usual = (KEYFRAMES / period.get()).max(1);
     let shared = asked(scheme, file.parameters, directory, keys, files)?;
     let mut channels = Vec::new();
     for (index, channel) in file.channel.into_iter().enumerate() {
@@ -198,6 +217,9 @@ fn parts(
         period,
         keyframe_every: file.keyframe_every.unwrap_or(usual),
         clock_ppm: file.clock_ppm.unwrap_or(CLOCK_PPM),
+        step_bits: file.step_bits,
+        gathering: file.gathering,
+        full_every: file.full_every.unwrap_or(Parts::FULL_EVERY),
         filter: filter.transpose()?,
         shared,
         channels,

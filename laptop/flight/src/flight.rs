@@ -4,10 +4,10 @@ use crate::units::{self, unit_of_name};
 use crate::{Filter, Filtering, FlightError, FlightErrorKind};
 use catalogue::run::{Asked, Error, Known, RunTime, SampleType, Settings, Value, Visit};
 use catalogue::{Info, Kind, Parameter, for_sample_type};
-use spikewire::link::{CLOCK_TOLERANCE, Coding, longest_slot};
+use spikewire::link::{CLOCK_TOLERANCE, Coding, Session, Transmitter, longest_slot};
 use spikewire::{ConfigError, Fingerprint, Sample, Scheme};
 use std::collections::BTreeSet;
-use std::num::NonZeroU16;
+use std::num::NonZeroU32;
 use std::ops::Deref;
 use std::path::PathBuf;
 
@@ -36,18 +36,30 @@ pub struct Parts {
     /// Type of the samples.
     pub sample: SampleType,
     /// Time from one sample to the next, in µs.
-    pub period: NonZeroU16,
+    pub period: NonZeroU32,
     /// Number of samples from one keyframe, or heartbeat, to the next; 1 or more.
     pub keyframe_every: u32,
     /// Maximum deviation from the period of the time between samples, as measured by the sender's clock, in millionths
     /// of the period, 0 to 100 000.
     pub clock_ppm: u32,
+    /// Low bits of a channel's step number that its first event in a frame carries, 0 to 4: a receiver that missed fewer
+    /// net steps than half of 2 to this power has the sender's value again at the next event. Step codes only.
+    pub step_bits: u8,
+    /// Time in µs that events wait for others before they are sent, 0 to 1 000 000.
+    pub gathering: u32,
+    /// Time in µs from one full frame to the next, by which a receiver joins, 0 to 10 000 000; 0 if every frame is full.
+    pub full_every: u32,
     /// Filter that runs before the encoder of each channel.
     pub filter: Option<Filter>,
     /// Parameters that all channels share, in units of samples.
     pub shared: Asked,
     /// Channels, in the order in which a sample holds their values.
     pub channels: Vec<Channel>,
+}
+
+impl Parts {
+    /// Usual time between full frames in µs, that of a [`Transmitter`].
+    pub const FULL_EVERY: u32 = 1 << 19;
 }
 
 /// A flight whose parts fit together, from which sender and receiver are made.
@@ -106,7 +118,10 @@ impl Deref for Flight {
 const MOST: usize = 64;
 
 /// Shortest period in µs. The fastest inertial sensors take a sample in 31 µs; a shorter period was meant in ms.
-const SHORTEST: u16 = 30;
+const SHORTEST: u32 = 30;
+
+/// Longest period in µs, that of a frame.
+const LONGEST: u32 = (1 << 24) - 1;
 
 impl Flight {
     /// Checks that the parts fit together, and makes a flight of them.
@@ -121,13 +136,21 @@ impl Flight {
             let kind = FlightErrorKind::Range { given, min, max };
             if is_within { Ok(()) } else { Err(FlightError::new(name, kind)) }
         };
-        if parts.period.get() < SHORTEST {
-            let kind = FlightErrorKind::Period { given: parts.period.get(), min: SHORTEST };
+        let given = parts.period.get();
+        if given < SHORTEST {
+            let kind = FlightErrorKind::Period { given, min: SHORTEST, max: LONGEST };
             return Err(FlightError::new("period", kind));
         }
+        range("period", given.into(), SHORTEST.into(), LONGEST.into())?;
         range("channel", parts.channels.len() as f64, 1.0, MOST as f64)?;
         range("keyframe_every", parts.keyframe_every.into(), 1.0, f64::from(u32::MAX))?;
         range("clock_ppm", parts.clock_ppm.into(), 0.0, 1e5)?;
+        range("step_bits", parts.step_bits.into(), 0.0, 4.0)?;
+        if parts.step_bits > 0 && !parts.scheme.has_first_value() {
+            return Err(FlightError::new("step_bits", FlightErrorKind::NoSteps));
+        }
+        range("gathering", parts.gathering.into(), 0.0, 1e6)?;
+        range("full_every", parts.full_every.into(), 0.0, 1e7)?;
         let mut names = BTreeSet::new();
         for (index, channel) in parts.channels.iter_mut().enumerate() {
             let error = |name, kind| FlightError::new(name, kind).of_channel(index);
@@ -210,8 +233,8 @@ impl Flight {
 
     /// Returns whether a sample has time for so many sub-timesteps.
     fn has_room(&self, slots: u32) -> bool {
-        let length = longest_slot(slots, self.period.get().into(), CLOCK_TOLERANCE);
-        length > 0 && length <= longest_slot(slots, self.period.get().into(), self.clock_ppm)
+        let length = longest_slot(slots, self.period.get(), CLOCK_TOLERANCE);
+        length > 0 && length <= longest_slot(slots, self.period.get(), self.clock_ppm)
     }
 
     /// Returns the scheme of all channels, in the form that runs on the laptop.
@@ -294,7 +317,7 @@ impl Flight {
         if !self.is_slotted() {
             return 0;
         }
-        longest_slot(self.slots() as u32, self.period.get().into(), CLOCK_TOLERANCE)
+        longest_slot(self.slots() as u32, self.period.get(), CLOCK_TOLERANCE)
     }
 
     /// Returns the period and each channel's name, unit and counts as one text. The text is part of the
@@ -326,11 +349,24 @@ impl Flight {
         Ok(bank.labelled(&self.label()))
     }
 
-    /// Returns the frame format: the number of bits for each part of an event, and the period.
+    /// Returns the frame format: the number of bits for each part of an event, and the period. It is no part of the
+    /// fingerprint, because each full frame contains it.
     pub fn coding(&self) -> Coding {
         let addresses = self.channels.len() * self.neurons();
         let jitter = self.slot_ticks().checked_ilog2().map_or(0, |bits| bits as u8 + 2);
-        Coding::for_channels(addresses as u16, self.period.get().into()).with_jitter_bits(jitter)
+        Coding::for_channels(addresses as u16, self.period.get())
+            .with_jitter_bits(jitter)
+            .with_step_bits(self.step_bits)
+    }
+
+    /// Returns the sender's half of the link, before the first frame of this session.
+    pub fn transmitter(&self, session: Session) -> Transmitter {
+        let addresses = self.channels.len() * self.neurons();
+        Transmitter::new(self.coding(), session)
+            .with_addresses(0..=(addresses - 1) as u16)
+            .with_fingerprint(self.fingerprint())
+            .with_gathering(self.gathering)
+            .with_full_every(self.full_every)
     }
 
     /// Returns the maximum number of events that a receiver stores for a sample, over all channels; 0 if the receiver
@@ -384,12 +420,12 @@ fn run_time(info: &'static Info) -> &'static dyn RunTime {
 /// Returns the settings of a channel as it flies.
 ///
 /// # Errors
-/// Returns an error if a parameter is missing or refused, or if `start` is given: a flight starts from its first
-/// sample.
+/// Returns an error if a parameter is missing or refused, or if `start` is given for a scheme without a baseline, which
+/// starts from its first samples.
 fn settle(parts: &Parts, channel: &Channel) -> Result<Settings, FlightError> {
     let scheme = run_time(parts.scheme);
     let asked = channel.asked.or(&parts.shared);
-    if asked.get("start").is_some() {
+    if asked.get("start").is_some() && !parts.scheme.has_baseline() {
         return Err(FlightError::new("start", FlightErrorKind::NoStart));
     }
     let past = vec![0.0; scheme.looks_back(&asked)];

@@ -1,7 +1,8 @@
 //! Generates sender and receiver of a flight in Rust.
 
-use crate::{Flight, FlightError, FlightErrorKind, escaped};
+use crate::{Flight, FlightError, FlightErrorKind, Parts, UnitSize, escaped};
 use catalogue::run::{Constant, Rust};
+use spikewire::link::Coding;
 use std::fmt::{Debug, Write};
 
 /// Returns the source code of a module `flight`, for `include!`. It needs the crate `spikewire` with the feature
@@ -10,6 +11,7 @@ use std::fmt::{Debug, Write};
 /// | item | |
 /// |---|---|
 /// | `CHANNELS`, `NAMES`, `UNITS`, `COUNTS` | number of channels; their names; their units; the number of counts in one unit of each |
+/// | `SI` | size of each unit, in rad/s and in m/s²; 0 where the unit is none of that quantity |
 /// | `Code`, `SCHEMES` | type of the channels' schemes; the schemes, in flash |
 /// | `Bank`, `BANK` | type of the bank of encoders; the bank before the first sample |
 /// | `LABEL` | period, names, units and counts as text, a part of the fingerprint |
@@ -28,14 +30,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     let names = listed(flight.channels.iter().map(|channel| &channel.name));
     let units = listed(flight.channels.iter().map(|channel| &channel.unit));
     let counts = listed(flight.channels.iter().map(|channel| channel.counts));
-    let slots = match flight.slot_ticks() {
-        0 => String::new(),
-        ticks => format!(".with_slot_ticks({ticks})"),
-    };
-    let jitter = match coding.jitter_bits {
-        0 => String::new(),
-        bits => format!(".with_jitter_bits({bits})"),
-    };
+    let (slots, bits, sending) = (slots(flight), bits(coding), sending(flight));
     let mut items = String::new();
     let mut item = |words: &str, code: String| {
         // Writing to a string cannot fail.
@@ -53,6 +48,10 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     item(
         "Number of counts in one unit of each channel.",
         format!("pub const COUNTS: [f64; CHANNELS] = [{counts}];"),
+    );
+    item(
+        "Size of each channel's unit, in rad/s and in m/s²; 0 where the unit is none of that quantity.",
+        format!("pub const SI: [[f64; 2]; CHANNELS] = [{}];", listed(sizes(flight).into_iter())),
     );
     item("Type of every channel's scheme.", format!("pub type Code = {code};"));
     let rounded = flight.rounded();
@@ -74,7 +73,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     );
     item(
         "Encoders of all channels, in their state before the first sample.",
-        format!("pub const BANK: Bank = spikewire::Bank::per_channel(SCHEMES){slots};"),
+        format!("pub const BANK: Bank = {}{slots};", bank(flight, &schemes)?),
     );
     item(
         "Period, names, units and counts as text. The fingerprints that sender and receiver compare include it.",
@@ -91,7 +90,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
     item(
         "Frame format: the number of bits for each part of an event, and the period.",
         format!(
-            "pub const CODING: spikewire::link::Coding = spikewire::link::Coding::for_channels({}, PERIOD){jitter};",
+            "pub const CODING: spikewire::link::Coding = spikewire::link::Coding::for_channels({}, PERIOD){bits};",
             channels * flight.neurons()
         ),
     );
@@ -99,7 +98,7 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         "Returns the sender's half of the link, before the first frame of this session. Its frames carry the fingerprint of bank and label.",
         format!(
             "#[must_use]\npub fn transmitter(session: spikewire::link::Session) -> spikewire::link::Transmitter {{\n    \
-             spikewire::link::Transmitter::new(CODING, session).with_addresses(0..={}).with_fingerprint(BANK.fingerprint()).with_label(LABEL)\n}}",
+             spikewire::link::Transmitter::new(CODING, session).with_addresses(0..={}).with_fingerprint(BANK.fingerprint()).with_label(LABEL){sending}\n}}",
             channels * flight.neurons() - 1
         ),
     );
@@ -120,6 +119,79 @@ pub fn rust(flight: &Flight) -> Result<String, FlightError> {
         ),
     );
     Ok(module(&items))
+}
+
+/// Returns the call that sets the length of a sub-timestep, if the scheme has sub-timesteps.
+fn slots(flight: &Flight) -> String {
+    match flight.slot_ticks() {
+        0 => String::new(),
+        ticks => format!(".with_slot_ticks({ticks})"),
+    }
+}
+
+/// Returns the calls that set the frame format's bits for jitter and step numbers, where there are some.
+fn bits(coding: Coding) -> String {
+    let mut calls = String::new();
+    // Writing to a string cannot fail.
+    if coding.jitter_bits > 0 {
+        let _ = write!(calls, ".with_jitter_bits({})", coding.jitter_bits);
+    }
+    if coding.step_bits > 0 {
+        let _ = write!(calls, ".with_step_bits({})", coding.step_bits);
+    }
+    calls
+}
+
+/// Returns the calls that set when a transmitter sends, where that is not the usual time.
+fn sending(flight: &Flight) -> String {
+    let mut calls = String::new();
+    // Writing to a string cannot fail.
+    if flight.gathering > 0 {
+        let _ = write!(calls, ".with_gathering({})", flight.gathering);
+    }
+    if flight.full_every != Parts::FULL_EVERY {
+        let _ = write!(calls, ".with_full_every({})", flight.full_every);
+    }
+    calls
+}
+
+/// Returns the size of each channel's unit in rad/s and in m/s²; 0 where the unit is none of that quantity.
+fn sizes(flight: &Flight) -> Vec<[f64; 2]> {
+    let mut sizes = Vec::new();
+    for channel in &flight.channels {
+        let size = UnitSize::of(&channel.unit);
+        let rate = size.and_then(UnitSize::rate).unwrap_or_default();
+        sizes.push([rate, size.and_then(UnitSize::acceleration).unwrap_or_default()]);
+    }
+    sizes
+}
+
+/// Returns the bank without sub-timesteps, in Rust. `schemes` has a reference to the scheme of each channel.
+///
+/// # Errors
+/// Returns an error if the scheme cannot be written as a constant.
+fn bank(flight: &Flight, schemes: &[String]) -> Result<String, FlightError> {
+    let starts = flight.settings().iter().map(|settings| settings.number("start").ok());
+    let starts: Vec<Option<f64>> = starts.collect();
+    if starts.iter().all(Option::is_none) {
+        return Ok("spikewire::Bank::per_channel(SCHEMES)".to_owned());
+    }
+    let rust = Rust::new(flight.sample);
+    let mut channels = Vec::new();
+    for ((channel, scheme), start) in schemes.iter().enumerate().zip(starts) {
+        let Some(start) = start else {
+            channels.push(format!("({scheme}, <Code as spikewire::Start>::START)"));
+            continue;
+        };
+        let Constant { scheme: unfiltered, .. } = flight.unfiltered(channel)?;
+        let state = format!("<{unfiltered}>::state_at({})", rust.number(start));
+        let state = match flight.filter {
+            Some(_) => format!("Code::start({state})"),
+            None => state,
+        };
+        channels.push(format!("({scheme}, {state})"));
+    }
+    Ok(format!("spikewire::Bank::per_channel_with_states([{}])", channels.join(", ")))
 }
 
 /// Constants of a flight's schemes, each with the names of its channels, and for each channel a reference to its constant.
@@ -164,15 +236,23 @@ impl Flight {
     /// # Errors
     /// Returns an error if there is no such channel, or if the scheme cannot be written as a constant.
     pub fn constant(&self, channel: usize) -> Result<Constant, FlightError> {
-        let error = |name, kind| FlightError::new(name, kind).of_channel(channel);
-        let settings = self.settings().get(channel);
-        let settings = settings.ok_or_else(|| error("channel", FlightErrorKind::Missing))?;
-        let constant = self.run_time().constant(settings);
-        let constant = constant.map_err(|_| error("scheme", FlightErrorKind::NoConstant))?;
+        let constant = self.unfiltered(channel)?;
         let Some(filter) = self.filter else { return Ok(constant) };
         let sample = Rust::new(self.sample).sample();
         let unfiltered = [constant.scheme, constant.value];
         let [scheme, value] = filter.constant(&sample, self.rate() as f32, unfiltered);
         Ok(Constant { scheme, value })
+    }
+
+    /// Returns the scheme of a channel, without the flight's filter, as a constant in Rust.
+    ///
+    /// # Errors
+    /// See [`constant`](Self::constant).
+    fn unfiltered(&self, channel: usize) -> Result<Constant, FlightError> {
+        let error = |name, kind| FlightError::new(name, kind).of_channel(channel);
+        let settings = self.settings().get(channel);
+        let settings = settings.ok_or_else(|| error("channel", FlightErrorKind::Missing))?;
+        let constant = self.run_time().constant(settings);
+        constant.map_err(|_| error("scheme", FlightErrorKind::NoConstant))
     }
 }

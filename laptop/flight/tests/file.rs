@@ -1,7 +1,7 @@
 //! Flight files: they are read, written and read again without change, and a wrong one is refused with key and line.
 
 use proptest::prelude::*;
-use spikewire_flight::{Filter, Flight, FlightErrorKind, rust};
+use spikewire_flight::{Filter, Flight, FlightErrorKind, UnitSize, rust};
 
 const HEAD: &str = "version = 1\nscheme = \"sf\"\nperiod = 2000\n";
 const CHANNEL: &str = "[[channel]]\nname = \"roll\"\nparameters = { threshold = 0.1 }\n";
@@ -35,6 +35,12 @@ fn an_invalid_file_is_refused_with_key_and_line() {
         ("version = 1\nscheme = \"sf\"\nperiod = 0", "period", Some(3), "cannot be read"),
         ("version = 1\nscheme = \"sf\"\nperiod = \"2 ms\"", "period", Some(3), "cannot be read"),
         ("version = 1\nscheme = \"sf\"\nperiod = 2", "period", Some(3), "2 ms are 2000"),
+        (
+            "version = 1\nscheme = \"sf\"\nperiod = 16777216",
+            "period",
+            Some(3),
+            "16777216 must be in 30..=16777215",
+        ),
         (
             "version = 1\nscheme = \"sf\"\nsample = \"f64\"\nperiod = 1",
             "sample",
@@ -129,11 +135,28 @@ fn an_invalid_file_is_refused_with_key_and_line() {
             "must be a number, without quotation marks",
         ),
         (
-            "[[channel]]\nname = \"a\"\nparameters = { threshold = 1, start = 0 }",
+            "[[channel]]\nname = \"a\"\nparameters = { threshold = 1, start = \"0\" }",
             "start",
             Some(0),
             6,
-            "starts from its first samples",
+            "must be a number, without quotation marks",
+        ),
+        ("step_bits = 5\n[[channel]]\nname = \"a\"", "step_bits", None, 4, "5 must be in 0..=4"),
+        ("step_bits = -1\n[[channel]]\nname = \"a\"", "step_bits", None, 4, "cannot be read"),
+        (
+            "gathering = 1000001\n[[channel]]\nname = \"a\"",
+            "gathering",
+            None,
+            4,
+            "1000001 must be in 0..=1000000",
+        ),
+        ("gathering = \"4 ms\"\n[[channel]]\nname = \"a\"", "gathering", None, 4, "cannot be read"),
+        (
+            "\nfull_every = 10000001\n[[channel]]\nname = \"a\"",
+            "full_every",
+            None,
+            5,
+            "10000001 must be in 0..=10000000",
         ),
         (
             "[[channel]]\nname = \"a\"\ncounts = 0\nparameters = { threshold = 1 }",
@@ -229,7 +252,7 @@ proptest! {
     fn a_written_file_is_read_back(
         thresholds in prop::collection::vec(1e-3_f64..1e3, 1..8),
         counts in 1e-2_f64..1e4,
-        period in 30_u16..,
+        period in 30_u32..=16_777_215,
         keyframe_every in 1_u32..1000,
         spikes in 1_u32..=127,
         corner in prop::option::of(0.01_f32..0.4),
@@ -241,7 +264,7 @@ proptest! {
         });
         let channels = channels.collect::<String>();
         let filter = corner.map(|part| {
-            let corner = part * 1e6 / f32::from(period);
+            let corner = part * 1e6 / period as f32;
             format!("filter = {{ kind = \"low-pass\", corner = {corner:?} }}\n")
         });
         let text = format!(
@@ -379,8 +402,96 @@ fn a_unit_is_that_of_the_file_or_of_a_name() {
     let units: Vec<&str> = flight.channels.iter().map(|channel| channel.unit.as_str()).collect();
     assert_eq!(units, ["deg/s", "rad/s", "rad/s"]);
     flight.check_units().unwrap();
-    let error = Flight::parse(&format!("{text}[[channel]]\nname = \"gyroADC[0]\"")).unwrap();
+    let error = Flight::parse(&format!("{text}[[channel]]\nname = \"gyro_x\"")).unwrap();
     let error = error.check_units().unwrap_err();
     assert_eq!((error.place.channel, error.place.line), (Some(3), Some(14)));
     assert!(error.to_string().contains("give `unit = \"rad/s\"`"), "{error}");
+}
+
+/// Codes without steps have no step numbers, and codes without a baseline no start.
+#[test]
+fn settings_of_step_codes_are_refused_elsewhere() {
+    for (scheme, parameters, key, words) in [
+        ("position", "min = -1, max = 1, neurons = 5", "step_bits", "the scheme has no steps"),
+        (
+            "mw",
+            "threshold = 1, window = 3, start = 0",
+            "start",
+            "only sf, sod and asf have a baseline",
+        ),
+        ("tbr", "threshold = 1, start = 0", "start", "only sf, sod and asf have a baseline"),
+    ] {
+        let bits = if key == "step_bits" { "step_bits = 4\n" } else { "" };
+        let text = format!(
+            "version = 1\nscheme = \"{scheme}\"\nperiod = 2000\n{bits}[[channel]]\nname = \"a\"\n\
+             parameters = {{ {parameters} }}\n"
+        );
+        let error = Flight::parse(&text).unwrap_err();
+        let line = if key == "step_bits" { 4 } else { 6 };
+        assert_eq!((error.parameter.as_str(), error.place.line), (key, Some(line)), "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+    }
+}
+
+/// What the sender alone decides is written into its half, and kept by the file, but is no part of the fingerprint.
+#[test]
+fn what_the_sender_decides_is_written_and_no_part_of_the_fingerprint() {
+    let plain = Flight::parse(&format!("{HEAD}{CHANNEL}")).unwrap();
+    let text = format!("{HEAD}step_bits = 3\ngathering = 5000\nfull_every = 250000\n{CHANNEL}")
+        .replace("0.1 }", "0.1, start = -0.25 }");
+    let flight = Flight::parse(&text).unwrap();
+    assert_eq!(flight.fingerprint(), plain.fingerprint());
+    assert_eq!((flight.coding().step_bits, plain.coding().step_bits), (3, 0));
+    let again = Flight::parse(&flight.to_toml(&[])).unwrap();
+    assert_eq!((again.step_bits, again.gathering, again.full_every), (3, 5_000, 250_000));
+    assert_eq!(rust(&again).unwrap(), rust(&flight).unwrap());
+    let module = rust(&flight).unwrap();
+    for part in [
+        "PERIOD).with_step_bits(3);",
+        ".with_label(LABEL).with_gathering(5000).with_full_every(250000)",
+        "per_channel_with_states([(&SCHEME_0, <spikewire::temporal::StepForward<f32>>::state_at(-0.25))]);",
+    ] {
+        assert!(module.contains(part), "{module}");
+    }
+    assert!(
+        !plain.to_toml(&[]).contains("step_bits") && !rust(&plain).unwrap().contains("gathering")
+    );
+}
+
+/// Thresholds of 0.1 rad/s and 0.1 m/s² have that size in whatever unit a log gives, so that a firmware for the file has them.
+#[test]
+fn thresholds_are_right_in_every_unit_that_advice_writes() {
+    const G: f64 = 9.806_65;
+    let degree = std::f64::consts::PI / 180.0;
+    for (name, unit, si) in [
+        ("gyro_x", "rad/s", [1.0, 0.0]),
+        ("gyro_x", "mrad/s", [1e-3, 0.0]),
+        ("gyro_x", "deg/s", [degree, 0.0]),
+        ("gyro_x", "deg/s/10", [degree / 10.0, 0.0]),
+        ("gyro_x", "deg/s/16.4", [degree / 16.4, 0.0]),
+        ("acc_z", "m/s²", [0.0, 1.0]),
+        ("acc_z", "m/s/s", [0.0, 1.0]),
+        ("acc_z", "g", [0.0, G]),
+        ("acc_z", "mg", [0.0, G * 1e-3]),
+        ("acc_z", "g/2048", [0.0, G / 2048.0]),
+        ("acc_z", "g/20480", [0.0, G / 20480.0]),
+    ] {
+        let threshold = 0.1 / (si[0] + si[1]);
+        let text = format!(
+            "{HEAD}[[channel]]\nname = \"{name}\"\nunit = \"{unit}\"\nparameters = {{ threshold = {threshold} }}\n"
+        );
+        let flight = Flight::parse(&text).unwrap();
+        flight.check_units().unwrap();
+        let size = UnitSize::of(unit).unwrap();
+        let own = [size.rate().unwrap_or_default(), size.acceleration().unwrap_or_default()];
+        for (own, si) in own.iter().zip(si) {
+            assert!((own - si).abs() <= 1e-12 * si, "{unit}: {own}, {si}");
+        }
+        let flown = flight.settings()[0].number("threshold").unwrap() * (own[0] + own[1]);
+        assert!((flown - 0.1).abs() < 1e-7, "{unit}: {flown}");
+        assert!(
+            rust(&flight).unwrap().contains(&format!("SI: [[f64; 2]; CHANNELS] = [{own:?}];")),
+            "{unit}"
+        );
+    }
 }

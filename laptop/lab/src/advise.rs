@@ -1,14 +1,16 @@
 //! Advice on recordings: describes each channel, and names the scheme that suits it.
 
 mod bank;
+mod bytes;
 mod flown;
 
 pub use bank::BankAdvice;
+pub use bytes::link_bytes;
 pub use flown::{Verdict as FlightVerdict, verdict};
 
+use self::bytes::Lean;
 use crate::Result;
 use crate::brief::{brief, short};
-use crate::events::{Format, Item};
 use crate::flight::{Filter, Filtering, period};
 use crate::look::{ChannelSummary, Verdict};
 use crate::scheme::Scheme;
@@ -25,7 +27,6 @@ use crate::watch::{Progress, Watch};
 use catalogue::Kind;
 use catalogue::run::{Asked, Given, SampleType};
 use serde::Serialize;
-use spikewire::{Event, Keyframe, Tick};
 use std::time::{Duration, Instant};
 
 /// Largest phase lag, in degrees at the control loop's bandwidth, that a code's latency may cause: a third of a phase
@@ -179,7 +180,7 @@ pub struct Advice {
     /// sensor, without an RMSE of the user's.
     #[serde(skip)]
     stays_as_flown: bool,
-    /// Bytes a second that the raw samples would take on a wire.
+    /// Bytes a second that the raw samples take in lean frames.
     raw_bytes_per_second: Option<f64>,
     #[serde(skip)]
     sample: SampleType,
@@ -343,6 +344,12 @@ impl Advice {
         Some((best.scheme?, &best.row))
     }
 
+    /// Returns the filter before the advised scheme's encoder, behind which its settings were searched.
+    pub fn best_filter(&self) -> Option<Filter> {
+        let (scheme, _) = self.best()?;
+        Some(self.filter(scheme, self.sample)?.filter)
+    }
+
     fn new(request: &AdviseRequest, channel: usize, recording: &Recording) -> Result<Self> {
         /// Default of the allowed RMSE, as a share of the signal's standard deviation. The share gives a
         /// signal-to-noise ratio of 14 dB.
@@ -350,7 +357,7 @@ impl Advice {
         recording.steady_rate()?;
         let look = ChannelSummary::of(recording);
         let objection = look.objection().filter(|_| look.verdict != Verdict::Clipped);
-        let bytes = if matches!(request.sample, SampleType::Fixed16 { .. }) { 2.0 } else { 4.0 };
+        let lean = Lean { channels: 1, sample: request.sample };
         let loop_latency = match (request.loop_bandwidth, recording.rate) {
             (None, _) => None,
             (Some(bandwidth), Some(rate)) if bandwidth * FEWEST > rate => {
@@ -392,7 +399,7 @@ impl Advice {
             others: Vec::new(),
             unflown: Vec::new(),
             is_cut_short: false,
-            raw_bytes_per_second: recording.rate.map(|rate| rate * bytes),
+            raw_bytes_per_second: recording.rate.map(|rate| lean.bytes_per_second(rate)),
             is_one_of_many: request.recordings.len() > 1,
             sample: request.sample,
             core: costs::core(&request.core).unwrap_or_default(),
@@ -421,7 +428,7 @@ impl Advice {
             self.others.extend(self.unflown.last().cloned());
             return Ok(());
         }
-        match self.tuned(request, scheme, recording, &Asked::default(), budget)? {
+        match self.tuned(request, scheme, recording, &self.anchored(scheme), budget)? {
             Tuning::Reached(candidate) => {
                 self.is_cut_short |= candidate.row.is_cut_short;
                 self.reaching.push(*candidate);
@@ -498,7 +505,18 @@ impl Advice {
     /// control loop, if the channel's unit is unknown, or if the scheme did not fly.
     fn flown_parameters(&self, scheme: Scheme) -> Option<Asked> {
         self.loop_latency?;
-        flown::parameters(scheme, self.inertial.as_ref()?)
+        Some(self.anchored(scheme).or(&flown::parameters(scheme, self.inertial.as_ref()?)?))
+    }
+
+    /// Returns the parameters that every advice on a scheme has for this channel. On an axis of an inertial sensor a code with
+    /// a baseline starts from 0, so that baselines are multiples of the threshold and do not depend on the first sample,
+    /// which the rotors may shake. Other signals, such as a pressure, may lie too far from 0.
+    fn anchored(&self, scheme: Scheme) -> Asked {
+        let mut asked = Asked::default();
+        if scheme.info().has_baseline() && self.inertial.is_some() {
+            asked.set("start", 0.0);
+        }
+        asked
     }
 
     /// Searches for settings of a scheme within `budget`. The parameters in `fixed` keep their values.
@@ -736,43 +754,20 @@ impl Advice {
                 row.costs.instructions()
             ),
             format!(
-                "    {} bytes a second on the link, where samples take {raw}: the fewest of {} schemes that come near enough, this one within an RMSE of {}{flown}; {next}",
+                "    {} bytes a second on the link, where samples in frames of 4 bytes more take {raw}: the fewest of {} schemes that come near enough, this one within an RMSE of {}{flown}; {next}",
                 bytes(best),
                 self.reaching.len(),
                 short(self.max_rmse)
             ),
         ];
+        if let (Some(bytes), Some(raw)) = (best.link_bytes_per_second, self.raw_bytes_per_second)
+            && bytes >= raw
+        {
+            reasons.push("    ! it saves no bytes beside the samples".to_owned());
+        }
         if best.scheme.is_some_and(|scheme| scheme.info().drifts()) {
             reasons.push(format!("    ! {DRIFTS}"));
         }
         reasons
     }
-}
-
-/// Returns the number of bytes that a trial's events take as frames of `spikewire`'s link. Each frame is sent once it
-/// is full. If the scheme's decoder needs keyframes, the bytes include a keyframe every `keyframe_every` samples.
-/// `rate` is the number of samples a second.
-///
-/// # Errors
-/// Returns an error if the link cannot express the rate or the events.
-pub fn link_bytes(trial: &Trial, rate: f64, keyframe_every: u64) -> Result<f64> {
-    let period = (1e6 / rate).round().max(1.0);
-    let format: Format = format!("link,period={period}").parse()?;
-    let mut writer = format.writer(true)?;
-    let mut bytes: Vec<u8> = Vec::new();
-    let tick = |sample: u64| Tick::from_micros((sample as f64 * period) as u64);
-    let (mut next, every) = (0, keyframe_every.max(1));
-    for event in &trial.events {
-        while trial.scheme.info().has_first_value() && event.sample >= next {
-            let value = trial.decoded.get(next as usize).copied().unwrap_or_default();
-            writer
-                .write(&Item::Keyframe(Keyframe::new(tick(next), 0, value as f32)), &mut bytes)?;
-            next += every;
-        }
-        let spike =
-            Event { tick: tick(event.sample), address: event.neuron, polarity: event.polarity };
-        writer.write(&Item::Event(spike), &mut bytes)?;
-    }
-    writer.finish(&mut bytes)?;
-    Ok(bytes.len() as f64)
 }

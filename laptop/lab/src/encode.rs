@@ -28,7 +28,9 @@ pub fn encode_flight(
     let input = flight::input(flight, input)?;
     let open =
         || -> Result<Box<dyn Source + '_>> { Ok(Box::new(Sampled::new(flight, input.open()?)?)) };
-    encode_to(&open, &input, (scheme, sample, &asked), format, output)
+    let mut encoded = encode_to(&open, &input, (scheme, sample, &asked), format, output)?;
+    encoded.notes.extend(flight::other_rate(flight, encoded.clock.rate()));
+    Ok((encoded.output, encoded.notes))
 }
 
 /// Encodes channels of a recording. Writes a log in `format`, or a table of spikes if `format` is `None`. The output is
@@ -47,7 +49,8 @@ pub fn encode(
     output: impl FnOnce() -> Result<Output>,
 ) -> Result<(Output, Vec<Words>)> {
     let open = || input.open().map(|own| -> Box<dyn Source> { own });
-    encode_to(&open, input, (scheme, sample, parameters), format, output)
+    let encoded = encode_to(&open, input, (scheme, sample, parameters), format, output)?;
+    Ok((encoded.output, encoded.notes))
 }
 
 /// A function that opens the recording at its start. It may be called several times.
@@ -88,11 +91,11 @@ fn encode_to(
     coding: (Scheme, SampleType, &Asked),
     format: Option<Format>,
     output: impl FnOnce() -> Result<Output>,
-) -> Result<(Output, Vec<Words>)> {
+) -> Result<Encoded> {
     if format.is_some() && input.is_read_once() {
         return Err(RequestKind::RangeAtEnd.into());
     }
-    let encoded = encode_from(open, input, coding, |start| {
+    encode_from(open, input, coding, |start| {
         let output = output()?;
         Ok(match format {
             None => Box::new(Writer::new(output, start.header, start.is_timed)?),
@@ -101,8 +104,7 @@ fn encode_to(
                 Box::new(Recorder::new(output, format, start.header, start.is_timed, &ranges)?)
             }
         })
-    })?;
-    Ok((encoded.output, encoded.notes))
+    })
 }
 
 /// Encodes channels of a recording, and passes the spikes to the writer that `write` makes. Calls `write` only after

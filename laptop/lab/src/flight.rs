@@ -4,16 +4,16 @@
 use crate::Result;
 use crate::coding::Coding;
 use crate::events::{Item, LinkTally, Values};
-use crate::input::{Chunk, InputOptions, Source};
+use crate::input::{Chunk, InputOptions, Source, is_other_rate};
 use crate::scheme::Scheme;
 use crate::tune::RequestKind;
 use crate::tune::report::Row;
-use crate::unit::known_unit;
+use crate::unit::unit_of_name;
 use crate::values;
 use catalogue::run::{Asked, Given, SampleType, Words};
 use spikewire::link::{Received, Withheld};
 use spikewire_flight::FlightError;
-use std::num::NonZeroU16;
+use std::num::NonZeroU32;
 
 pub use spikewire_flight::{Channel, Filter, Filtering, Flight, Parts, rust};
 
@@ -68,7 +68,7 @@ fn channel(name: &str, asked: Asked) -> Channel {
     Channel {
         name: name.to_owned(),
         source: name.to_owned(),
-        unit: known_unit(name).unwrap_or_default().to_owned(),
+        unit: unit_of_name(name).unwrap_or_default().to_owned(),
         counts: 1.0,
         asked,
     }
@@ -104,6 +104,9 @@ fn of_channels(
         period: period(rate)?,
         keyframe_every: (rate / KEYFRAMES).round().max(1.0) as u32,
         clock_ppm: CLOCK_PPM,
+        step_bits: 0,
+        gathering: 0,
+        full_every: Parts::FULL_EVERY,
         filter: None,
         shared: Asked::default(),
         channels,
@@ -117,12 +120,25 @@ pub(crate) const CLOCK_PPM: u32 = 20_000;
 ///
 /// # Errors
 /// Returns an error if the link cannot express the period.
-pub(crate) fn period(rate: f64) -> Result<NonZeroU16> {
+pub(crate) fn period(rate: f64) -> Result<NonZeroU32> {
+    /// The longest period of a frame, in µs.
+    const LONGEST: f64 = 16_777_215.0;
     let period = (1e6 / rate).round();
-    let period = Some(period).filter(|own| *own <= f64::from(u16::MAX)).map(|own| own as u16);
+    let period = Some(period).filter(|own| *own <= LONGEST).map(|own| own as u32);
     period
-        .and_then(NonZeroU16::new)
+        .and_then(NonZeroU32::new)
         .ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))
+}
+
+/// Returns a note for the user if a recording has another rate than the flight, by a fifth or more.
+pub(crate) fn other_rate(flight: &Flight, rate: Option<f64>) -> Option<Words> {
+    let rate = rate.filter(|rate| is_other_rate(*rate, flight.rate()))?;
+    let what = "its filter and its times are those of other samples";
+    let words = format!(
+        "the recording has {rate:.2} samples a second, and the flight {:.2}: {what}",
+        flight.rate()
+    );
+    Some(words.into())
 }
 
 /// Returns a copy of `options` that chooses the sources of the flight's channels: columns of a table, or topic and fields

@@ -24,7 +24,8 @@ pub struct ChannelSummary {
     pub rate: Option<f64>,
     /// Standard deviation of the time between samples, in ms. Gaps are left out.
     pub jitter_ms: Option<f64>,
-    /// Number of gaps: steps in time longer than 1.5 times the usual step.
+    /// Number of gaps: steps in time longer than 1.5 times the usual step or, if samples arrive in bursts, than 1.5 times
+    /// the usual step from burst to burst.
     pub gaps: usize,
     /// Smallest sample.
     pub min: f64,
@@ -94,7 +95,7 @@ impl ChannelSummary {
             });
         let deviation = deviation(values);
         let noise = noise(values);
-        let (jitter_ms, gaps) = steps(&recording.times);
+        let (jitter_ms, gaps) = steps(recording);
         let quiet = quiet(values);
         let range = |is_quiet: bool| {
             let windows = values.chunks(WINDOW).zip(&quiet).filter(|(_, own)| **own == is_quiet);
@@ -261,14 +262,19 @@ fn bandwidth(values: &[f64]) -> f64 {
 }
 
 /// Returns the standard deviation of the time between samples in ms, and the number of gaps. The standard deviation
-/// leaves out the gaps. `times` are in µs.
-fn steps(times: &[i64]) -> (Option<f64>, usize) {
-    let steps: Vec<f64> = times.windows(2).map(|pair| (pair[1] - pair[0]) as f64 * 1e-3).collect();
-    let mut sorted = steps.clone();
-    sorted.sort_by(f64::total_cmp);
-    let Some(usual) = sorted.get(sorted.len() / 2).copied() else { return (None, 0) };
-    let regular: Vec<f64> = steps.iter().copied().filter(|step| *step <= 1.5 * usual).collect();
-    (Some(deviation(&regular)), steps.len() - regular.len())
+/// leaves out the gaps.
+fn steps(recording: &Recording) -> (Option<f64>, usize) {
+    let (mut regular, mut gaps) = (Vec::new(), 0);
+    let Some(longest) = recording.longest_step() else { return (None, 0) };
+    for pair in recording.times.windows(2) {
+        let step = (pair[1] - pair[0]) as f64;
+        if step > longest {
+            gaps += 1;
+        } else {
+            regular.push(step * 1e-3);
+        }
+    }
+    (Some(deviation(&regular)), gaps)
 }
 
 #[cfg(test)]

@@ -127,7 +127,11 @@ pub fn score_flight(flight: &Flight, input: &InputOptions) -> Result<Vec<Scored>
         }
         all.push(Scored {
             channel: channel.name.clone(),
-            notes: recording.notes(),
+            notes: recording
+                .notes()
+                .into_iter()
+                .chain(flight::other_rate(flight, recording.rate))
+                .collect(),
             schemes: vec![(scheme, Ok(figures))],
         });
     }

@@ -5,7 +5,7 @@ use crate::input::{CHUNK, Chunk, Clock, InputOptions, Kind, TableKind, UnevenRat
 use crate::measure::{Measure, Sums};
 use crate::scheme::Scheme;
 use crate::slope::Slope;
-use crate::unit::known_unit;
+use crate::unit::unit_of_name;
 use crate::{Result, Spot};
 use catalogue::run::{Asked, Calibrated, Event, SampleType, Settings, Shape, Words};
 use std::ops::Range;
@@ -145,6 +145,12 @@ impl Recording {
         self.rejected
     }
 
+    /// Returns the longest step in µs that is no gap, if the recording has times that go forward.
+    pub(crate) fn longest_step(&self) -> Option<f64> {
+        let longest = self.clock.longest_step();
+        (self.times.len() > 1 && longest > 0.0).then_some(longest)
+    }
+
     /// Returns the two rates of a recording whose times contradict themselves.
     pub fn uneven(&self) -> Option<UnevenRate> {
         self.clock.uneven()
@@ -161,7 +167,7 @@ impl Recording {
 
     /// Returns the unit of the samples, if the log gives it or the channel's name shows it.
     pub fn unit(&self) -> Option<&str> {
-        self.unit.as_deref().or_else(|| known_unit(&self.name))
+        self.unit.as_deref().or_else(|| unit_of_name(&self.name))
     }
 
     /// Returns the duration in seconds, if it is known. The unknown time between segments is left out.

@@ -1,21 +1,24 @@
-// The other axes of the sensor: each with its spikes by the settings that are open, below the channel that is looked at.
+// The axes of the sensor, each with its spikes by the settings that are open: one thread reads and codes them all, so that the
+// log is in memory once more, and not once for each axis.
 
 import { css, element, fine, fixed } from "./dom.js";
-import { siblings } from "./channels.js";
+import { groupOf, siblings } from "./channels.js";
 import { Library } from "./library.js";
 import { lowerBound, Pyramid } from "./pyramid.js";
 import { choiceOf, loadRequest, openRequest, state } from "./state.js";
 import { Times } from "./times.js";
+import { answer as answeredUnit, toldUnit } from "./units.js";
 
 /** Longer recordings show one channel alone: each axis takes 24 bytes a sample. */
 const MOST_SAMPLES = 3_000_000;
-const HEIGHT = 56, RASTER = 12;
+const HEIGHT = 34, RASTER = 8;
 
 /** How axes are read: another rate is another recording. */
 const keyOf = ({ topic, rate, skip }) => JSON.stringify([topic, rate, skip]);
 
 export class Axes {
   #all = [];
+  #library;
   #of;
   #setting;
   #running;
@@ -26,64 +29,90 @@ export class Axes {
 
   /** What was open is gone. */
   forget() {
-    if (this.#of && this.#of.opened === state.opened && this.#of.key === keyOf(state.channel)) return;
-    for (const { library } of this.#all) library.stop();
+    const { recording } = state;
+    if (this.#of && this.#of.opened === recording?.opened && this.#of.key === keyOf(recording.asked)) return;
+    this.#library?.stop();
+    this.#library = this.#of = undefined;
     this.#all = [];
-    this.#of = undefined;
     this.host.textContent = "";
   }
 
-  /** Runs a setting on the axes of the topic that is open, and draws them. */
+  /** Runs a setting on the axes of the topic that is shown, and draws them. */
   show(setting) {
-    const { opened, recording } = state, { topic, field: shown, asked } = recording;
+    const { recording } = state, { opened, topic, field: shown, asked } = recording;
     this.#setting = structuredClone(setting);
-    if (!opened || recording.samples > MOST_SAMPLES) return;
     if (!this.#of) {
-      const fields = siblings(opened.topics, topic);
+      const fields = recording.samples > MOST_SAMPLES ? [] : siblings(opened.topics, topic);
       this.#of = { opened, key: keyOf(asked), asked };
-      this.#all = fields.length < 2 ? [] : fields.map((field) => ({ field, library: new Library() }));
-      this.host.replaceChildren(...this.#all.map((axis) => this.#strip(axis)));
+      this.#all = (fields.length < 2 ? [] : fields).map((field, place) => ({ field, place }));
+      if (this.#all.length) this.#library = new Library();
     }
+    this.#strips(recording);
     for (const { field, button } of this.#all) button.setAttribute("aria-pressed", field === shown);
     this.#running ??= this.#runAll().finally(() => (this.#running = undefined));
   }
 
+  /** The strips below the names of their sensors, anew if what is known of these changed. */
+  #strips(recording) {
+    const titles = this.#all.map(({ field }) => {
+      const unit = toldUnit(recording, field) ?? answeredUnit(recording, field);
+      const rate = recording.uneven || !recording.rate ? "" : ` · ${fine(recording.rate)} Hz`;
+      return `${groupOf(recording, field) > 0 ? "Acceleration" : "Turn rate"}${unit ? `, ${unit}` : ""}${rate}`;
+    });
+    if (this.titles === titles.join() && this.host.children.length) return;
+    this.titles = titles.join();
+    this.host.replaceChildren(...this.#all.flatMap((axis, place) => [
+      ...(titles[place] === titles[place - 1] ? [] : [element("p", { className: "group", textContent: titles[place] })]),
+      axis.button ?? this.#strip(axis),
+    ]));
+  }
+
+  /** Runs the newest setting on one axis after the other, until all have it. */
   async #runAll() {
-    let done, all;
-    do {
-      [done, all] = [JSON.stringify(this.#setting), this.#all];
-      await Promise.all(all.map((axis) => this.#run(axis, JSON.parse(done))));
-    } while (done !== JSON.stringify(this.#setting) || all !== this.#all);
+    while (true) {
+      const all = this.#all, setting = this.#setting;
+      for (const axis of all) {
+        await this.#run(axis, this.#setting);
+        if (all !== this.#all) break;
+      }
+      if (all === this.#all && JSON.stringify(setting) === JSON.stringify(this.#setting)) return;
+    }
   }
 
   async #run(axis, setting) {
+    const { opened, asked: channel } = this.#of, library = this.#library;
     try {
+      if (!this.#of.isOpen) {
+        await library.ask(openRequest(opened), { files: opened.files });
+        if (library !== this.#library) return;
+        this.#of.isOpen = true;
+      }
       if (!axis.recording) {
-        const { opened, asked: channel } = this.#of;
-        await axis.library.ask(openRequest(opened), { files: opened.files });
-        axis.recording = await axis.library.ask(loadRequest({ ...channel, field: axis.field }));
+        axis.recording = await library.ask(loadRequest(opened, { ...channel, field: axis.field }, axis.place));
         axis.times = new Times(axis.recording.samples, axis.recording.rate, axis.recording.arrays.times);
         axis.signal = new Pyramid(axis.recording.arrays.values);
       }
       const choice = choiceOf(setting, axis.field), key = JSON.stringify(choice);
-      if (axis.key === key) return this.#draw(axis);
-      axis.answer = await axis.library.ask({ ask: "run", choice });
-      axis.key = key;
+      if (axis.key === key) return;
+      axis.answer = await library.ask({ ask: "run", choice, place: axis.place });
+      [axis.key, axis.error] = [key, undefined];
       axis.decoded = new Pyramid(axis.answer.arrays.decoded);
       const { spikes, spikes_per_second: rate, rmse } = axis.answer.figures;
-      axis.words.textContent = `${axis.field}: ${rate === null ? `${fixed(spikes, 0)} spikes` : `${fixed(rate, 1)} spikes a second`}, RMSE ${fine(rmse)}`;
+      axis.figures = `${rate === null ? `${fixed(spikes, 0)} spikes` : `${fixed(rate, 1)} spikes a second`}, RMSE ${fine(rmse)}`;
+      axis.words.textContent = `${axis.field}: ${axis.figures}`;
     } catch (error) {
       if (error.isStopped) return;
       axis.answer = axis.key = undefined;
       axis.error = error;
       axis.words.textContent = `${axis.field}: ${error.message}`;
     }
+    axis.button.title = axis.words.textContent;
     this.#draw(axis);
   }
 
   /** The strip of an axis: a button that opens its channel. */
   #strip(axis) {
-    axis.words = element("span", { className: "quiet", textContent: axis.field });
+    axis.words = element("span", { textContent: axis.field });
     axis.canvas = element("canvas");
     axis.button = element("button", { type: "button", className: "axis" });
     axis.button.append(axis.words, axis.canvas);

@@ -45,9 +45,11 @@ export function wanted(topics) {
 /** The inertial fields of this topic, to be drawn beside each other. */
 export const siblings = (topics, name) => inertial(topics.find((topic) => topic.name === name) ?? topics[0]);
 
-/** Banks have parameters for turn rates (0), for sideways forces (1), and for the force along the thrust (2). */
+/** Banks have parameters for turn rates (0), for sideways forces (1), and for the force along the thrust (2); for no other channel. */
 export function groupOf({ opened, topic }, field) {
   const fields = siblings(opened.topics, topic), place = fields.indexOf(field), name = `${topic}.${field}`.toLowerCase();
   if (fields.length === 6 && place >= 0) return place < 3 ? 0 : place < 5 ? 1 : 2;
+  const isNamed = (GYRO.test(name) || ACCEL.test(name)) && !OTHER.test(field.toLowerCase());
+  if (place < 0 && !isNamed) return undefined;
   return ACCEL.test(name) && !GYRO.test(name) ? (place < 2 ? 1 : 2) : 0;
 }

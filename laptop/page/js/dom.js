@@ -5,7 +5,7 @@ export const css = (name) => getComputedStyle(document.documentElement).getPrope
 export const element = (name, attributes = {}) => Object.assign(document.createElement(name), attributes);
 
 /** Boxes of settings that are no parameters of schemes. */
-const BOXES = { accept_cut: "accept-cut", skip_non_finite: "skip", rate: "rate", topic: "topic", field: "field", column: "field", sample: "sample", max_rmse: "max-rmse", evaluations: "evaluations" };
+const BOXES = { time_unit: "time-unit", header: "header", loop_bandwidth: "bandwidth", accept_cut: "accept-cut", skip_non_finite: "skip", rate: "rate", topic: "topic", field: "field", column: "field", sample: "sample", max_rmse: "max-rmse", evaluations: "evaluations" };
 
 /** Shows an error, or none, and marks the box of the setting at fault. */
 export function fail(id, error) {

@@ -1,9 +1,10 @@
 // All settings in a link, and back.
 
-/** The part of a link behind `#`. */
-export function write({ example, channel, settings }) {
+/** The part of a link behind `#`; of a file of one's own it holds the name, and no sample. */
+export function write({ example, file, channel, settings }) {
   const link = new URLSearchParams();
   if (example) link.set("example", example);
+  else if (file) link.set("file", file);
   for (const name of ["topic", "field", "rate"]) if (channel?.[name]) link.set(name, channel[name]);
   if (channel?.skip) link.set("skip", "1");
   settings.forEach(({ scheme, sample, parameters, own = {}, forces, isFlown, filter, keyframe_ms: keyframes }, place) => {
@@ -31,5 +32,5 @@ export function read(hash) {
     if (settings[text[0]]) Object.assign(settings[text[0]], { filter, keyframe_ms: keyframes, forces, isFlown });
   }
   const channel = Object.fromEntries(["topic", "field", "rate"].map((name) => [name, link.get(name) ?? undefined]));
-  return { example: link.get("example") ?? undefined, channel: { ...channel, skip: link.has("skip") }, settings };
+  return { example: link.get("example") ?? undefined, file: link.get("file") ?? undefined, channel: { ...channel, skip: link.has("skip") }, settings };
 }

@@ -14,7 +14,6 @@ export async function watch(file) {
   try {
     await video.start(file);
     at("events").hidden = at("end").hidden = false;
-    at("video").scrollIntoView({ block: "nearest" });
   } catch (error) {
     fail("video-error", new Error(`${file?.name ?? "camera"}: ${error.message}`));
   }
@@ -29,7 +28,6 @@ function endVideo() {
 export async function connect(file) {
   const why = whyNot(Boolean(file));
   fail("board-error", why && new Error(why));
-  if (file) at("board").scrollIntoView({ block: "nearest" });
   if (why || at("connect").disabled) return;
   at("connect").disabled = true;
   try {

@@ -31,15 +31,19 @@ function scale(parameter, signal) {
   };
 }
 
+/** The parameter that a scheme has its one slider for: the threshold, or else the first that has a slider. */
+export const mainParameter = ({ parameters }) => parameters.find(({ name, slider }) => name === "threshold" && slider) ?? parameters.find(({ slider }) => slider);
+
 /**
- * Fills `host` with the parameters of a scheme. `signal` has `min`, `max` and `unit`; `onChange(name, text)` is told
+ * Fills `main` with the main parameter of a scheme and `host` with the others. `signal` has `min`, `max` and `unit`; `onChange(name, text)` is told
  * what a user gives, and an undefined text where it is taken back. Returns a function that shows values.
  */
-export function parameters(host, scheme, signal, onChange) {
-  host.textContent = "";
+export function parameters({ main, host }, scheme, signal, onChange) {
+  main.textContent = host.textContent = "";
+  const first = mainParameter(scheme);
   const shown = scheme.parameters.map((own) => {
     const id = `parameter-${own.name}`;
-    const box = host.appendChild(Object.assign(document.createElement("div"), { className: "parameter" }));
+    const box = (own === first ? main : host).appendChild(Object.assign(document.createElement("div"), { className: "parameter" }));
     const label = Object.assign(document.createElement("label"), { htmlFor: id, textContent: own.name });
     const unit = own.unit === "signal" ? signal.unit : own.unit;
     if (unit) label.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: `, ${unit}` }));

@@ -33,9 +33,9 @@ export async function preview(plots, then) {
       // What was found in the whole signal holds for its parts.
       const choice = { ...own, parameters: { ...answer.asked, ...own.parameters } };
       const [start, end] = plots.samples(), from = Math.max(0, start - LEAD);
-      const made = await state.library.ask({ ask: "preview", choice, from, to: end, pieces: Math.ceil(plots.columns() / COLUMNS), most: MOST });
+      const made = await recording.library.ask({ ask: "preview", choice, from, to: end, pieces: Math.ceil(plots.columns() / COLUMNS), most: MOST });
       if (answer !== outcome().answer) break;
-      recording.preview = { of: answer, run: { ...answer, isPreview: true, isPart: made.length < made.stride, neurons: made.neurons, slots: made.slots, arrays: made.arrays, pyramid: new Pieces(made.arrays.decoded, made) } };
+      recording.preview = { of: answer, run: { ...answer, isPreview: true, isPart: made.length < made.stride, neurons: made.neurons, slots: made.slots, arrays: made.arrays, pyramid: new Pieces(made.arrays.decoded, made), errors: new Pieces(made.arrays.errors, made) } };
       changed();
     } while (isStale);
   } catch {

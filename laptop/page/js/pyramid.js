@@ -2,47 +2,47 @@
 
 const BLOCK = 256;
 
+/** The lower and the higher of two ranges. */
+const joined = ([a, b], [c, d]) => [Math.min(a, c), Math.max(b, d)];
+
+/** A series of values or, if a second one is given, of its distances from that one, which take no memory of their own. */
 export class Pyramid {
-  constructor(values) {
-    this.values = values;
+  constructor(values, from) {
+    Object.assign(this, { values, from });
     const blocks = Math.ceil(values.length / BLOCK);
     this.low = new Float64Array(blocks);
     this.high = new Float64Array(blocks);
     for (let block = 0; block < blocks; block++) {
-      let low = Infinity, high = -Infinity;
-      const end = Math.min((block + 1) * BLOCK, values.length);
-      for (let at = block * BLOCK; at < end; at++) {
-        const value = values[at];
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
-      this.low[block] = low;
-      this.high[block] = high;
+      [this.low[block], this.high[block]] = this.each(block * BLOCK, Math.min((block + 1) * BLOCK, values.length));
     }
   }
 
   at(sample) {
-    return this.values[sample];
+    return this.from ? this.values[sample] - this.from[sample] : this.values[sample];
+  }
+
+  /** The lowest and highest of some samples, looked at one by one. */
+  each(start, end) {
+    const { values, from } = this;
+    let low = Infinity, high = -Infinity;
+    for (let at = start; at < end; at++) {
+      const value = from ? values[at] - from[at] : values[at];
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+    return [low, high];
   }
 
   /** The lowest and highest of the samples from `start` to before `end`. */
   range(start, end) {
-    let low = Infinity, high = -Infinity;
-    const see = (lows, highs, from, to) => {
-      for (let at = from; at < to; at++) {
-        if (lows[at] < low) low = lows[at];
-        if (highs[at] > high) high = highs[at];
-      }
-    };
     const first = Math.ceil(start / BLOCK), last = Math.floor(end / BLOCK);
-    if (first >= last) {
-      see(this.values, this.values, start, end);
-    } else {
-      see(this.values, this.values, start, first * BLOCK);
-      see(this.low, this.high, first, last);
-      see(this.values, this.values, last * BLOCK, end);
+    if (first >= last) return this.each(start, end);
+    let low = Infinity, high = -Infinity;
+    for (let block = first; block < last; block++) {
+      if (this.low[block] < low) low = this.low[block];
+      if (this.high[block] > high) high = this.high[block];
     }
-    return [low, high];
+    return joined(joined(this.each(start, first * BLOCK), [low, high]), this.each(last * BLOCK, end));
   }
 }
 

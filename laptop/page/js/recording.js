@@ -5,12 +5,11 @@ import { whileBusy } from "./dom.js";
 import { Library } from "./library.js";
 import { Pyramid } from "./pyramid.js";
 import { changed, loadRequest, openRequest, state } from "./state.js";
+import { unitOf } from "./units.js";
 
 /** Who codes a recording that was read. */
 let onRead = async () => {};
 export const whenRead = (read) => (onRead = read);
-
-const onProgress = (reading) => change({ reading });
 
 function change(part) {
   Object.assign(state, part);
@@ -28,34 +27,53 @@ async function readable(file) {
 }
 
 /** Opens files or an example, and loads a channel of it: the wanted one, or a turn rate, or the first. */
-export const open = (from, wanted) => whileBusy(() => openNow(from, wanted));
+export const open = (from, wanted) => {
+  state.table = {};
+  return whileBusy(() => openNow(from, wanted));
+};
+
+/** Opens the same once more, with other options. */
+export const reopen = () => whileBusy(() => openNow(state.asked, state.asked.wanted));
+
+/** Ends a library, unless the recording that is shown lives in it. */
+function leave(library) {
+  if (library !== state.recording?.library) library.stop();
+}
 
 async function openNow({ files: given = [], example }, wanted = {}) {
-  if (state.reading) {
-    // What is read now is not wanted any more.
-    state.library.stop();
-    state.library = new Library();
-  }
-  const { library } = state;
-  let files = given;
+  // What is read now is not wanted any more; what is shown keeps its library until the new one stands.
+  const isFree = !state.reading && state.library !== state.recording?.library;
+  if (!isFree) leave(state.library);
+  const library = isFree ? state.library : new Library();
+  Object.assign(state, { library, asked: { files: given, example, wanted } });
+  const onProgress = (reading) => library === state.library && change({ reading });
   change({ fileError: undefined, reading: { done: 0, total: 1 } });
   try {
-    files = await Promise.all(given.map(readable));
+    const files = await Promise.all(given.map(readable));
+    const answer = await library.ask(openRequest({ example, files, table: state.table }), { files, onProgress });
     if (library !== state.library) return;
-    const answer = await library.ask(openRequest({ example, files }), { files, onProgress });
-    const isAnother = answer.file !== state.opened?.file;
-    Object.assign(state, { opened: { ...answer, example, files }, isDamaged: state.acceptsCut && state.isDamaged, channel: channelOf(answer.topics, wanted) });
-    if (isAnother) state.recording = undefined;
+    if (!answer.topics.some(({ fields }) => fields.length)) throw new Error("it has no channel of numbers beside times and counts: open another file, or say the header line");
+    Object.assign(state, { opened: { ...answer, example, files, table: state.table }, isDamaged: state.acceptsCut && state.isDamaged, channel: channelOf(answer.topics, wanted) });
     await load();
   } catch (error) {
-    if (error.isStopped) return;
-    const isDamaged = error.remedy === "accept_cut" || state.acceptsCut, [named] = given;
+    if (error.isStopped || library !== state.library) return;
+    const [named] = given;
     const name = named && error.file !== named.name ? `${named.name}: ` : "";
     change({
-      reading: undefined, recording: undefined, isDamaged, opened: isDamaged ? { files, topics: [] } : undefined,
+      reading: undefined, opened: undefined, isDamaged: error.remedy === "accept_cut" || state.acceptsCut,
       fileError: Object.assign(error, { message: name + error.message }),
     });
   }
+}
+
+/** Goes back to the recording that is still shown: its channel is read again, as another one may have been read in its library. */
+export function goBack() {
+  const { recording, library } = state;
+  if (!recording) return;
+  leave(library);
+  const { opened, asked } = recording, { example, files } = opened;
+  change({ library: recording.library, opened, channel: asked, asked: { example, files, wanted: asked }, table: opened.table, fileError: undefined, isDamaged: false, dropped: [] });
+  return load();
 }
 
 const topicOf = (topics, name) => topics.find((topic) => topic.name === name);
@@ -68,6 +86,7 @@ export function channelOf(topics, { topic, field, rate, skip }) {
 
 /** Reads another channel of what is open. */
 export function loadChannel(part) {
+  if (!state.opened) return undefined;
   state.channel = channelOf(state.opened.topics, { ...state.channel, ...part });
   return load();
 }
@@ -76,22 +95,26 @@ export const load = () => whileBusy(loadNow);
 
 async function loadNow() {
   const asked = state.channel, { opened, library } = state;
+  const onProgress = (reading) => library === state.library && change({ reading });
   change({ fileError: undefined, reading: { done: 0, total: 1 } });
   try {
-    const recording = await library.ask(loadRequest(asked), { onProgress });
+    const recording = await library.ask(loadRequest(opened, asked), { onProgress });
+    if (library !== state.library) return;
     const { values } = recording.arrays, [min, max] = new Pyramid(values).range(0, values.length);
-    const { topic, field } = asked;
-    change({ reading: undefined, recording: Object.assign(recording, { min, max, topic, field, opened, asked, runs: [] }) });
+    const { topic, field } = asked, before = state.recording;
+    Object.assign(recording, { min, max, topic, field, opened, asked, library, runs: [], told: recording.unit });
+    recording.unit = unitOf(recording);
+    change({ reading: undefined, recording });
+    if (before && before.library !== library) before.library.stop();
   } catch (error) {
-    if (!error.isStopped) change({ reading: undefined, recording: undefined, fileError: error });
+    if (!error.isStopped && library === state.library) change({ reading: undefined, fileError: error });
     return;
   }
   await onRead();
 }
 
-/** Reads the recording again after the library broke. */
-export async function reopened() {
-  const { library, opened } = state;
+/** Reads the recording again after its library broke. */
+export async function restored({ library, opened, asked }) {
   await library.ask(openRequest(opened), { files: opened.files });
-  await library.ask(loadRequest(state.channel));
+  await library.ask(loadRequest(opened, asked));
 }

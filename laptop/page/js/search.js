@@ -3,7 +3,7 @@
 import { at } from "./dom.js";
 import { Library } from "./library.js";
 import { take } from "./settings.js";
-import { changed, current, state } from "./state.js";
+import { changed, choiceOf, current, loadRequest, openRequest, state } from "./state.js";
 
 let thread;
 
@@ -16,7 +16,10 @@ async function search(work) {
   state.searching = { share: 0, words: "" };
   changed();
   try {
-    await thread.ask({ ask: "take", name: recording.name, rate: recording.rate, file: 0 }, { files: [new Blob([recording.arrays.values])] });
+    // Read as it was for the page, with its times and its unit: the search answers as the program does.
+    const { opened, asked } = recording;
+    await thread.ask(openRequest(opened), { files: opened.files });
+    await thread.ask(loadRequest(opened, asked));
     await work(found);
   } catch (error) {
     if (error.isStopped) found.isStopped = true;
@@ -30,16 +33,22 @@ async function search(work) {
 /** Ends the search of a recording that is looked at no more. */
 export const endSearch = () => thread?.stop();
 
+/** Milliseconds between two looks at the progress: thousands of settings a second would leave the page no time for anything else. */
+const OFTEN = 150;
+let shownAt = 0;
+
 const onProgress = (before, of, name) => ({ done, total, words }) => {
   state.searching = { share: (before + done / total) / of, words: `${words ?? name}: ${done} of ${total} settings` };
+  if (performance.now() - shownAt < OFTEN) return;
+  shownAt = performance.now();
   changed();
 };
 
 async function tune(found, names) {
-  const evaluations = Number(at("evaluations").value) || 300, { sample } = current();
+  const { recording } = state, evaluations = Number(at("evaluations").value) || 300, { sample } = current();
   for (const [place, scheme] of names.entries()) {
     try {
-      const choice = { scheme, sample, parameters: {} };
+      const choice = { ...choiceOf(current(), recording.field), scheme, sample, parameters: {} };
       found.fronts.push(await thread.ask({ ask: "front", choice, evaluations }, { onProgress: onProgress(place, names.length, scheme) }));
     } catch (error) {
       if (error.isStopped || names.length === 1 || error.isFatal) throw error;
@@ -50,10 +59,13 @@ async function tune(found, names) {
 }
 
 async function advise(found) {
-  const request = { ask: "advise", sample: current().sample, max_rmse: Number(at("max-rmse").value) || null, evaluations: Number(at("evaluations").value) || 300 };
+  const request = {
+    ask: "advise", sample: current().sample, max_rmse: Number(at("max-rmse").value) || null,
+    loop_bandwidth: at("bandwidth").valueAsNumber || null, evaluations: Number(at("evaluations").value) || 300,
+  };
   const { words, best, whyNot } = await thread.ask(request, { onProgress: onProgress(0, 1, "") });
   found.advice = words;
-  if (best) take(best.scheme, best.parameters);
+  if (best) take(best.scheme, best.parameters, best.filter);
   else found.error = new Error(whyNot);
 }
 

@@ -2,14 +2,14 @@
 
 import { listenToBank } from "./bank.js";
 import { at, whileBusy } from "./dom.js";
-import { axes, plots, spectrum } from "./drawings.js";
+import { axes, plots, whenThreshold } from "./drawings.js";
 import { History } from "./history.js";
 import * as link from "./link.js";
 import { isPreviewed, preview } from "./preview.js";
-import { reopened } from "./recording.js";
+import { restored } from "./recording.js";
 import { whenActed } from "./render-settings.js";
 import { fitted, give as giveTo, suited } from "./shares.js";
-import { changed, choiceOf, current, state } from "./state.js";
+import { changed, choiceOf, current, isDimmed, state } from "./state.js";
 import { asFlown } from "./verdict.js";
 
 const history = new History();
@@ -28,7 +28,7 @@ function suit() {
 /** Shows the settings as they are now, in the page and in its link, and runs them. */
 function follow(what) {
   [state.canUndo, state.canRedo] = [history.canUndo, history.canRedo];
-  globalThis.history.replaceState(null, "", `#${link.write({ example: state.opened?.example, channel: state.channel, settings: state.settings })}`);
+  globalThis.history.replaceState(null, "", `#${link.write({ example: state.awaited ? undefined : state.opened?.example, file: state.awaited?.file ?? state.opened?.file, channel: state.channel, settings: state.settings })}`);
   changed();
   return isPreviewed(what) ? preview(plots, () => whileBusy(run)) : whileBusy(run);
 }
@@ -46,17 +46,19 @@ async function run() {
     isStale = false;
     const { recording } = state;
     if (!recording) break;
+    const { library } = recording;
     for (const [place, setting] of [...state.settings].entries()) {
       const choice = choiceOf(setting, recording.field), key = JSON.stringify(choice);
       if (recording.runs[place]?.key === key) continue;
       let outcome;
       try {
-        outcome = { answer: await state.library.ask({ ask: "run", choice }) };
+        outcome = { answer: await library.ask({ ask: "run", choice }) };
       } catch (error) {
         outcome = { error };
-        if (error.isFatal) await reopened();
+        if (error.isStopped) break;
+        if (error.isFatal) await restored(recording);
       }
-      recording.runs[place] = { key, ...outcome };
+      recording.runs[place] = { key, scheme: setting.scheme, ...outcome };
       if (recording !== state.recording) break;
     }
     if (recording !== state.recording) isStale = true;
@@ -72,9 +74,12 @@ export function replace(setting) {
   return update();
 }
 
-/** Takes a scheme with the parameters that a search found on the channel that is open, for all axes, or with none. */
-export function take(scheme, given) {
-  const { sample, filter, keyframe_ms: keyframes } = current(), setting = { scheme, sample, parameters: {}, filter, keyframe_ms: keyframes };
+/** Filter and keyframes of a setting that another scheme takes over: those of a bank that flew are that bank's alone. */
+const sharedBy = ({ isFlown, filter, keyframe_ms: keyframes }) => (isFlown ? {} : { filter, keyframes });
+
+/** Takes a scheme with the parameters that a search found on the channel that is open behind this filter, for all axes, or with none. */
+export function take(scheme, given, filter = sharedBy(current()).filter) {
+  const { sample } = current(), { keyframes } = sharedBy(current()), setting = { scheme, sample, parameters: {}, filter, keyframe_ms: keyframes };
   return replace(given ? fitted(setting, given, axes.ranges) : setting);
 }
 
@@ -128,12 +133,16 @@ function listenToView() {
     event.preventDefault();
     views[view]();
   });
-  at("spectrum-box").addEventListener("toggle", () => spectrum.draw());
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    if (!state.recording) return;
+    plots.runs = [];
+    changed();
+  });
 }
 
 export function listenToSettings() {
-  whenActed({ choose, give, hide });
+  whenActed({ choose, give, hide, take });
+  whenThreshold((value) => give("threshold", String(Number(value.toPrecision(4)))));
   at("scheme").addEventListener("change", ({ target }) => take(target.value));
   at("sample").addEventListener("change", ({ target }) => replace({ ...current(), sample: target.value }));
   at("reset").addEventListener("click", () => take(current().scheme));
@@ -161,7 +170,7 @@ export function listenToSettings() {
   at("undo").addEventListener("click", () => step(-1));
   at("redo").addEventListener("click", () => step(1));
   addEventListener("keydown", (event) => {
-    const isText = event.target.matches?.("textarea, input[type=text], input[type=number]");
+    const isText = isDimmed() || event.target.matches?.("textarea, input[type=text], input[type=number], input[type=search]");
     if (!(event.ctrlKey || event.metaKey) || isText || !["z", "y", "Z"].includes(event.key)) return;
     event.preventDefault();
     step(event.key === "z" ? -1 : 1);

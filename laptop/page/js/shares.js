@@ -2,14 +2,15 @@
 
 import { siblings } from "./channels.js";
 import { parametersOf, schemeOf, shareOf, state } from "./state.js";
-import { asFlown } from "./verdict.js";
+import { asFlown, canFly } from "./verdict.js";
 
 const text = (value) => String(Number(value.toPrecision(6)));
 
 /** A setting for the channels that are open: another log has the bank that flew anew, and nothing of what was set for the axes of the one before. */
 export function suited(setting) {
   const { opened, topic, field } = state.recording, fields = siblings(opened.topics, topic);
-  if (setting.isFlown) return fields.every((own) => setting.own?.[own]) ? setting : asFlown(setting);
+  // A link or a file may bring the bank to a page that does not know the unit.
+  if (setting.isFlown && (canFly(setting) || !fields.some((own) => setting.own?.[own]))) return asFlown(setting);
   if (!setting.own || [field, ...fields].some((own) => setting.own[own])) return setting;
   const { own, basis, ...rest } = setting;
   return rest;

@@ -46,7 +46,7 @@ export class Spectrum {
     clearTimeout(this.#timer);
     for (const chart of this.#charts) chart.destroy();
     this.#charts = [];
-    if (!at("spectrum-box").open || !this.plots.recording) return;
+    if (at("spectrum-box").hidden || !this.plots.recording) return;
     const { recording, runs } = this.plots, [start, end] = this.plots.samples(), { values } = recording.arrays;
     const series = [{ name: "signal", colour: css("--signal"), values },
       ...runs.filter(({ isPreview }) => !isPreview).map(({ name, colour, arrays: { decoded, coded = values } }) => ({ name: `error of ${name}`, colour, values: decoded.map((value, place) => value - coded[place]) }))];

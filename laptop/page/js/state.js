@@ -4,25 +4,35 @@ import { groupOf } from "./channels.js";
 import { Library } from "./library.js";
 
 /**
- * The setting that the page opens with. Its parameters are those of all channels but accelerations, which have `forces`:
+ * The setting that the page opens with: the bank that flew, where the unit is known. Its parameters are those of all channels but accelerations, which have `forces`:
  * they are of another unit and size. Channels that differ have their parameters in `own`, by name.
  */
-export const FIRST = { scheme: "sf", sample: "f32", parameters: {} };
+export const FIRST = { scheme: "sod", sample: "f32", parameters: {}, isFlown: true };
 
 export const state = {
+  /** The library with the file that was opened last; a recording keeps the one that read it. */
   library: new Library(),
   /** The catalogue's schemes. */
   schemes: [],
-  /** What is open: { file, example, topics, files, notes }; files that came together, of which one is open. */
+  /** The file that was opened last: { file, example, topics, files, notes }; files that came together, of which one is open. */
   opened: undefined,
   dropped: [],
+  /** What a user asked to open last, to try again with other options: { files, example, wanted }. */
+  asked: undefined,
   /** The channel that is asked for: { topic, field, rate, skip }. */
   channel: {},
+  /** What the user says about a table: { timeUnit, header }. */
+  table: {},
   /** Whether the whole messages of a damaged log are taken, and whether that log is damaged. */
   acceptsCut: false, isDamaged: false,
   /** How far reading is, and why it failed. */
   reading: undefined, fileError: undefined,
-  /** The channel that was read. All that was made of it hangs on it, and goes with it: `runs`, `preview`, `found`, `text`. */
+  /** What a link names that is not here: { file, channel, settings }. */
+  awaited: undefined,
+  /**
+   * The channel that was read. All that was made of it hangs on it, and goes with it: `runs`, `preview`, `found`, `text`.
+   * It stays, dimmed, until another one stands in its place.
+   */
   recording: undefined,
   /** The settings that are compared, and the one whose tab is open. */
   settings: [structuredClone(FIRST)],
@@ -34,7 +44,13 @@ export const state = {
   hidden: new Set(),
   /** How far a search is: { share, words }. */
   searching: undefined,
+  /** The part of the page that is open below the picture, by its id. */
+  drawer: undefined,
+  page: "log", isVerdictOpen: false,
 };
+
+/** Whether the recording that is shown is not the one that was asked for. */
+export const isDimmed = () => Boolean(state.recording && (state.reading || state.fileError));
 
 let render = () => {};
 export const whenChanged = (then) => (render = then);
@@ -60,10 +76,13 @@ export const choiceOf = (setting, field) => ({
   filter: setting.filter ?? null, keyframe_ms: setting.keyframe_ms ?? null,
 });
 
-/** The request that opens a file or an example. */
-export const openRequest = ({ example, files }) =>
-  example ? { ask: "example", name: example } : { ask: "open", names: files.map(({ name }) => name), accept_cut: state.acceptsCut };
+/** What the user says about a table, as the library takes it. */
+const ofTable = ({ timeUnit, header }) => ({ time_unit: timeUnit || null, header: Number(header) || null });
 
-/** The request that reads a channel. */
-export const loadRequest = ({ topic, field, rate, skip }) =>
-  ({ ask: "load", topic: topic || null, field, rate: Number(rate) || null, skip_non_finite: skip ?? false, accept_cut: state.acceptsCut });
+/** The request that opens a file or an example. */
+export const openRequest = ({ example, files, table }) =>
+  example ? { ask: "example", name: example } : { ask: "open", names: files.map(({ name }) => name), accept_cut: state.acceptsCut, ...ofTable(table) };
+
+/** The request that reads a channel of what is open to a place in the library. */
+export const loadRequest = ({ table }, { topic, field, rate, skip }, place = 0) =>
+  ({ ask: "load", place, topic: topic || null, field, rate: Number(rate) || null, skip_non_finite: skip ?? false, accept_cut: state.acceptsCut, ...ofTable(table) });

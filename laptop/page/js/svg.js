@@ -17,7 +17,7 @@ function ticks(low, high, count) {
 
 export function picture(plots, colours) {
   const { recording, runs, view, times } = plots;
-  const [xs, ...series] = plots.data();
+  const [[xs, ...series]] = plots.data();
   let [low, high] = [Infinity, -Infinity];
   for (const own of series) for (const value of own) if (value !== null) [low, high] = [Math.min(low, value), Math.max(high, value)];
   const air = 0.06 * (high - low) || 1;

@@ -1,6 +1,7 @@
 // What is taken away: constants, tables, pictures, a flight's file.
 
 import { at, css, element } from "./dom.js";
+import { openDrawer } from "./drawer.js";
 import { axes, plots } from "./drawings.js";
 import { changed, choiceOf, current, outcome, settingsKey, state } from "./state.js";
 import { picture } from "./svg.js";
@@ -12,7 +13,7 @@ export function save(name, content, type) {
 }
 
 const choice = () => choiceOf(current(), state.recording.field);
-const ask = (kind) => state.library.ask({ ask: "export", kind, choice: choice() });
+const ask = (kind) => state.recording.library.ask({ ask: "export", kind, choice: choice() });
 
 const inC = (toml) => `/* Save as roll.toml:\n\n${toml}\n   then
 
@@ -29,7 +30,7 @@ async function flight() {
   const { recording } = state, own = choice(), { key, answer } = outcome();
   const shown = { name: recording.name, parameters: key === JSON.stringify(own) && answer ? answer.asked : own.parameters };
   const { channels, left } = await axes.outcome();
-  const { text } = await state.library.ask({ ask: "flight", choice: own, rate: recording.rate, channels: channels.length ? channels : [shown] });
+  const { text } = await recording.library.ask({ ask: "flight", choice: own, rate: recording.rate, channels: channels.length ? channels : [shown] });
   return { words: left.map((words) => `# ${words}\n`).join("") + text, left: left.join("; ") };
 }
 
@@ -58,6 +59,7 @@ async function takeAway({ text, save: kind }) {
   try {
     if (kind) save(...(await files[kind]()));
     else {
+      openDrawer("take");
       const made = await texts[text].make();
       recording.text = { file: texts[text].file, key, ...(made.words ? made : { words: made }) };
     }
@@ -80,7 +82,7 @@ async function copy() {
 }
 
 export function listenToTakeaway() {
-  for (const button of at("exports").children) button.addEventListener("click", () => takeAway(button.dataset));
+  for (const button of [at("flight-file"), ...at("exports").children]) button.addEventListener("click", () => takeAway(button.dataset));
   at("save").addEventListener("click", () => save(state.recording.text.file, state.recording.text.words, "text/plain"));
   at("copy").addEventListener("click", copy);
 }

@@ -13,15 +13,27 @@ enum Ask {
     /// What schemes there are.
     Catalogue,
     /// Takes the files that were dropped, in the place of those before, and lists what the first one holds.
-    Open { names: Vec<String>, accept_cut: bool },
+    Open {
+        names: Vec<String>,
+        accept_cut: bool,
+        #[serde(flatten)]
+        table: recording::TableOptions,
+    },
     /// The same with a recording that the page brings.
     Example { name: String },
-    /// Reads a channel of the file that is open.
-    Load(recording::Channel),
-    /// Takes samples from another worker.
-    Take { name: String, rate: Option<f64>, file: u32 },
-    /// Encodes and decodes the recording.
-    Run { choice: Choice },
+    /// Reads a channel of the file that is open, to a place.
+    Load {
+        #[serde(default)]
+        place: usize,
+        #[serde(flatten)]
+        channel: recording::Channel,
+    },
+    /// Encodes and decodes the recording at a place.
+    Run {
+        choice: Choice,
+        #[serde(default)]
+        place: usize,
+    },
     /// The same of parts of the recording, while a knob moves.
     Preview(run::Preview),
     /// Settings as text, or a file of spikes.
@@ -37,7 +49,7 @@ enum Ask {
     /// What a board sends, until it ends.
     Listen(board::Listen),
     /// The scheme that takes the fewest bytes within an error.
-    Advise { sample: String, max_rmse: Option<f64>, evaluations: usize },
+    Advise(front::Advise),
 }
 
 /// The answer to a request, or `{"error": …}`.
@@ -50,11 +62,10 @@ fn answer(request: &[u8]) -> Result<Value> {
         serde_json::from_slice(request).context("the page asks what this library does not know")?;
     match ask {
         Ask::Catalogue => Ok(catalogue::all()),
-        Ask::Open { names, accept_cut } => recording::open(&names, accept_cut),
+        Ask::Open { names, accept_cut, table } => recording::open(&names, accept_cut, &table),
         Ask::Example { name } => recording::example(&name),
-        Ask::Load(channel) => recording::load(channel),
-        Ask::Take { name, rate, file } => recording::take(name, rate, file),
-        Ask::Run { choice } => run::run(&choice),
+        Ask::Load { place, channel } => recording::load(channel, place),
+        Ask::Run { choice, place } => run::run(&choice, place),
         Ask::Preview(preview) => run::preview(&preview),
         Ask::Export { kind, choice } => export::export(&kind, &choice),
         Ask::Flight(channels) => flight::write(&channels),
@@ -62,8 +73,6 @@ fn answer(request: &[u8]) -> Result<Value> {
         Ask::Front { choice, evaluations } => front::front(&choice, evaluations),
         Ask::Frame(frame) => frames::next(&frame),
         Ask::Listen(options) => board::listen(&options),
-        Ask::Advise { sample, max_rmse, evaluations } => {
-            front::advise(&sample, max_rmse, evaluations)
-        }
+        Ask::Advise(request) => front::advise(&request),
     }
 }

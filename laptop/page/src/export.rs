@@ -4,7 +4,7 @@ use crate::flight;
 use crate::host::send;
 use crate::recording::{self, Open};
 use crate::run::Choice;
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use catalogue::run::{SET, Value as Parameter};
 use lab::coding::Coding;
 use lab::encode::{encode, encode_flight};
@@ -58,7 +58,7 @@ fn python(coding: &Coding) -> String {
 
 /// The file that `spikewire encode` writes with these settings; behind a filter with a flight of this one channel.
 fn spikes(open: &Open, trial: &Trial, choice: &Choice) -> Result<Vec<u8>> {
-    let input = open.input.as_ref().context("these samples come from no file")?;
+    let input = &open.input;
     let (output, _) = if choice.filter.is_some() {
         let channel = (open.recording.name.clone(), trial.settings.to_asked(trial.scheme.info()));
         let flight = flight::of(choice, open.recording.steady_rate()?, vec![channel])?;

@@ -8,11 +8,13 @@ use flight_logs::Kind;
 use flight_logs::files::{Bytes, lend, take_back};
 use lab::bench::signal::{RATE, Waveform};
 use lab::input::messages::overview;
-use lab::input::{ChannelOptions, InputOptions};
+use lab::input::{CHUNK, ChannelOptions, Clock, InputOptions};
 use lab::trial::Recording;
+use lab::unit::known_unit;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -38,25 +40,46 @@ pub(crate) struct Channel {
     skip_non_finite: bool,
     /// Whether the whole messages of a damaged log are taken.
     accept_cut: bool,
+    /// How the rows of a table are read.
+    #[serde(flatten)]
+    table: TableOptions,
+}
+
+/// What the user says about a table that the table itself does not tell.
+#[derive(Clone, Default, Deserialize)]
+pub(crate) struct TableOptions {
+    /// Unit of the time column.
+    time_unit: Option<String>,
+    /// Number of the line with the names of the columns, counted from 1.
+    header: Option<u64>,
 }
 
 thread_local! {
     static FILE: RefCell<PathBuf> = RefCell::default();
-    static OPEN: RefCell<Option<Open>> = const { RefCell::new(None) };
+    /// The recordings that are open, each at its place: the one that is looked at has place 0, the axes beside it follow.
+    static OPEN: RefCell<BTreeMap<usize, Open>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// What was read, and how; samples from another worker were not read.
+/// A recording, and the options with which it was read.
 pub(crate) struct Open {
     pub recording: Recording,
-    pub input: Option<InputOptions>,
+    pub input: InputOptions,
 }
 
 /// Calls a function with the recording that is looked at.
 ///
 /// # Errors
-/// There is none, or the function's own.
+/// Returns an error if no recording is open, or the function's own.
 pub(crate) fn with<T>(then: impl FnOnce(&Open) -> Result<T>) -> Result<T> {
-    OPEN.with_borrow(|open| then(open.as_ref().context("no recording is open")?))
+    with_place(0, then)
+}
+
+/// Calls a function with the recording at a place.
+///
+/// # Errors
+/// Returns an error if no recording is open at `place`, or the function's own.
+pub(crate) fn with_place<T>(place: usize, then: impl FnOnce(&Open) -> Result<T>) -> Result<T> {
+    OPEN.with_borrow(|open| then(open.get(&place).context("no recording is open")?))
 }
 
 /// Bytes in memory.
@@ -74,25 +97,27 @@ impl Bytes for Memory {
 }
 
 /// Takes files in the place of those before.
-pub(crate) fn open(names: &[String], accept_cut: bool) -> Result<Value> {
+pub(crate) fn open(names: &[String], accept_cut: bool, table: &TableOptions) -> Result<Value> {
     take_back();
+    OPEN.take();
     for (number, name) in (0..).zip(names) {
         lend(name, Dropped(number));
     }
     let first = names.iter().find(|name| *name == "metadata.yaml").or(names.first());
-    list(Path::new(first.context("no file")?), accept_cut)
+    list(Path::new(first.context("no file")?), accept_cut, table)
 }
 
 /// Opens a recording that the page brings.
 pub(crate) fn example(name: &str) -> Result<Value> {
     take_back();
+    OPEN.take();
     let (file, bytes): (_, std::borrow::Cow<_>) = match name {
         "flight" => ("hexarotor.csv", FLIGHT.into()),
         "paper" => ("signal.csv", paper().into_bytes().into()),
         _ => bail!("there is no example `{name}`"),
     };
     lend(file, Memory(bytes));
-    list(Path::new(file), false)
+    list(Path::new(file), false, &TableOptions::default())
 }
 
 /// The paper's signal as `spikewire signal` writes it.
@@ -103,26 +128,26 @@ fn paper() -> String {
 }
 
 /// What a file holds: topics with fields, of which a table has one without a name.
-fn list(path: &Path, accept_cut: bool) -> Result<Value> {
+fn list(path: &Path, accept_cut: bool, table: &TableOptions) -> Result<Value> {
     FILE.set(path.to_owned());
-    let topic = |name: &str, fields: Vec<String>, (count, about): (u64, String)| json!({ "name": name, "fields": fields, "count": count, "about": about });
     let (topics, notes) = match Kind::of(path)? {
         None => {
-            let mut options = options(None);
+            let mut options = options(None)?;
+            table.apply(&mut options)?;
             options.columns = vec!["all".to_owned()];
             let source = InputOptions { input: path.to_owned(), channel: options }.open()?;
-            let names = source.names().into_iter().map(str::to_owned).collect();
+            let names: Vec<String> = source.names().into_iter().map(str::to_owned).collect();
             let notes = source.notes().iter().map(|note| note.spelled(label).to_string());
-            (vec![topic("", names, (0, String::new()))], notes.collect())
+            (vec![topic("", &names, 0, "")], notes.collect())
         }
         Some(kind) => {
             let (topics, notes) = overview(path, kind, accept_cut, GAP)?;
             let topics =
                 topics.into_iter().filter(|own| own.unread.is_none() && !own.fields.is_empty());
             let topics = topics.map(|own| {
-                let fields = own.fields.iter().flat_map(|field| each(field)).collect();
+                let fields: Vec<String> = own.fields.iter().flat_map(|field| each(field)).collect();
                 let about = format!("{} messages {}", own.count, own.kind);
-                topic(&own.name, fields, (own.count, about.trim_end().to_owned()))
+                topic(&own.name, &fields, own.count, about.trim_end())
             });
             (topics.collect(), notes)
         }
@@ -131,6 +156,16 @@ fn list(path: &Path, accept_cut: bool) -> Result<Value> {
         bail!("{}: it holds no numbers that can be read", path.display());
     }
     Ok(json!({ "file": path, "topics": topics, "notes": notes }))
+}
+
+/// A topic of a log, or the columns of a table. A field without a known unit has none.
+fn topic(name: &str, fields: &[String], count: u64, about: &str) -> Value {
+    let unit = |field: &String| match name {
+        "" => known_unit(field),
+        topic => known_unit(&format!("{topic}.{field}")),
+    };
+    let units: Vec<_> = fields.iter().map(unit).collect();
+    json!({ "name": name, "fields": fields, "units": units, "count": count, "about": about })
 }
 
 /// The fields that `name[0..3]` stands for.
@@ -149,26 +184,41 @@ fn each(field: &str) -> Vec<String> {
     }
 }
 
-fn options(channel: Option<Channel>) -> ChannelOptions {
+impl TableOptions {
+    /// Sets these options for reading.
+    ///
+    /// # Errors
+    /// Returns an error if the unit of time is unknown.
+    fn apply(&self, options: &mut ChannelOptions) -> Result<()> {
+        options.header = self.header;
+        options.time_unit = self.time_unit.as_deref().map(str::parse).transpose()?;
+        Ok(())
+    }
+}
+
+fn options(channel: Option<Channel>) -> Result<ChannelOptions> {
     let mut options = ChannelOptions { gap: GAP, ..ChannelOptions::default() };
-    if let Some(Channel { topic, field, rate, skip_non_finite, accept_cut }) = channel {
+    if let Some(Channel { topic, field, rate, skip_non_finite, accept_cut, table }) = channel {
         options.accept_cut = accept_cut && topic.is_some();
         options.skip_non_finite = skip_non_finite;
         options.rate = rate;
+        if topic.as_deref().unwrap_or_default().is_empty() {
+            table.apply(&mut options)?;
+        }
         match topic {
             Some(_) => options.field = vec![field],
             None => options.column = vec![field],
         }
         options.topic = topic;
     }
-    options
+    Ok(options)
 }
 
-/// Reads a channel: its samples and times go to the page.
-pub(crate) fn load(channel: Channel) -> Result<Value> {
-    OPEN.take();
+/// Reads a channel to a place: its samples and times go to the page. If it cannot be read, the recording that was there
+/// stays.
+pub(crate) fn load(channel: Channel, place: usize) -> Result<Value> {
     let input =
-        InputOptions { input: FILE.with_borrow(Clone::clone), channel: options(Some(channel)) };
+        InputOptions { input: FILE.with_borrow(Clone::clone), channel: options(Some(channel))? };
     let recording = Recording::read(&input)?;
     send("values", &recording.values);
     if let Some(first) = recording.times.first() {
@@ -176,26 +226,28 @@ pub(crate) fn load(channel: Channel) -> Result<Value> {
         send("times", &recording.times.iter().map(seconds).collect::<Vec<_>>());
     }
     let notes = recording.notes().into_iter().map(|note| note.spelled(label).to_string());
-    let told = json!({
+    let uneven = recording.uneven().map(
+        |uneven| json!({ "throughLength": uneven.through_length, "byMedian": uneven.by_median }),
+    );
+    let answer = json!({
         "name": recording.name,
         "samples": recording.values.len(),
         "rate": recording.rate,
-        "uneven": recording.uneven().is_some(),
+        "uneven": uneven,
         "seconds": recording.seconds(),
         "unit": recording.unit(),
         "notes": notes.collect::<Vec<_>>(),
         "segments": recording.segments.iter().map(|own| own.start).collect::<Vec<_>>(),
+        "gaps": gaps(&recording),
     });
-    OPEN.set(Some(Open { recording, input: Some(input) }));
-    Ok(told)
+    OPEN.with_borrow_mut(|open| open.insert(place, Open { recording, input }));
+    Ok(answer)
 }
 
-/// Takes samples as the bytes of numbers.
-pub(crate) fn take(name: String, rate: Option<f64>, file: u32) -> Result<Value> {
-    let file = Dropped(file);
-    let mut bytes = vec![0; file.len() as usize];
-    file.read_at(0, &mut bytes)?;
-    let values: Vec<f64> = bytes.as_chunks().0.iter().map(|own| f64::from_le_bytes(*own)).collect();
-    OPEN.set(Some(Open { recording: Recording::of(name, values, rate), input: None }));
-    Ok(json!({}))
+/// Returns the samples after which a gap follows, as the clock of the recording counts gaps.
+fn gaps(recording: &Recording) -> Vec<u64> {
+    let first = recording.times.get(..CHUNK).unwrap_or(&recording.times);
+    let mut clock = Clock::new(first, recording.rate, GAP);
+    let steps = clock.observe(&recording.times).into_iter();
+    steps.filter(|step| step.kind == lab::input::Kind::Gap).map(|step| step.after).collect()
 }

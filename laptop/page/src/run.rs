@@ -48,26 +48,32 @@ impl Choice {
         Ok((scheme, self.sample.parse()?, asked))
     }
 
-    /// Filters a recording, if that is chosen, and encodes and decodes it.
+    /// Filters a recording, if a filter is chosen.
     ///
     /// # Errors
-    /// The choice makes no sense on it.
+    /// Returns an error if the recording has no steady rate for the filter, or if the filter is not possible at this rate.
+    pub(crate) fn behind_filter<'a>(&self, recording: &'a Recording) -> Result<Cow<'a, Recording>> {
+        let Some(filter) = self.filter else { return Ok(Cow::Borrowed(recording)) };
+        let sample = self.sample.parse()?;
+        let rate = recording.steady_rate()?;
+        let rate = rate.context("a filter needs samples at a known rate")? as f32;
+        drop(filter.start(sample, rate)?);
+        Ok(Cow::Owned(recording.filtered(|| {
+            // It started a line above.
+            filter.start(sample, rate).unwrap_or_else(|_| Box::new(|value| value))
+        })))
+    }
+
+    /// Filters a recording, if a filter is chosen, and encodes and decodes it.
+    ///
+    /// # Errors
+    /// Returns an error if the choice makes no sense on the recording.
     pub(crate) fn trial<'a>(
         &self,
         recording: &'a Recording,
     ) -> Result<(Cow<'a, Recording>, Trial)> {
         let (scheme, sample, asked) = self.read()?;
-        let recording = match self.filter {
-            Some(filter) => {
-                let rate = recording.rate.context("a filter needs samples at a known rate")? as f32;
-                drop(filter.start(sample, rate)?);
-                Cow::Owned(recording.filtered(|| {
-                    // It started a line above.
-                    filter.start(sample, rate).unwrap_or_else(|_| Box::new(|value| value))
-                }))
-            }
-            None => Cow::Borrowed(recording),
-        };
+        let recording = self.behind_filter(recording)?;
         let trial = Trial::new(scheme, &asked, sample, &recording)?;
         Ok((recording, trial))
     }
@@ -84,18 +90,21 @@ pub(crate) fn texts(asked: &Asked) -> BTreeMap<&'static str, String> {
 }
 
 /// Encodes and decodes the recording: events and decoded values go to the page, and what a filter made of the samples.
-pub(crate) fn run(choice: &Choice) -> Result<Value> {
-    recording::with(|open| {
+pub(crate) fn run(choice: &Choice, place: usize) -> Result<Value> {
+    recording::with_place(place, |open| {
         let (recording, trial) = choice.trial(&open.recording)?;
         if let Cow::Owned(filtered) = &recording {
             send("coded", &filtered.values);
         }
         send("decoded", &trial.decoded);
         send_events(&trial.events);
-        let bytes = |rate: f64| link_bytes(&trial, rate, choice.keyframe_every(rate)).ok();
-        let link = recording
-            .rate
-            .and_then(|rate| Some(bytes(rate)? * rate / recording.values.len() as f64));
+        // Times that contradict themselves give no bytes a second, as they give a flight file no period.
+        let link = match recording.steady_rate().ok().flatten() {
+            Some(rate) => link_bytes(&trial, rate, choice.keyframe_every(rate))
+                .ok()
+                .map(|bytes| bytes * rate / recording.values.len() as f64),
+            None => None,
+        };
         let costs = |core| Costs::new(trial.scheme, &trial.settings, trial.latency, core);
         let delay = |filter: Filter| filter.delay(recording.rate? as f32).ok();
         let asked = texts(&trial.settings.to_asked(trial.scheme.info()));
@@ -144,12 +153,15 @@ pub(crate) fn preview(asked: &Preview) -> Result<Value> {
         let span = to.saturating_sub(asked.from);
         let pieces = if span <= asked.most { 1 } else { asked.pieces.max(1) };
         let length = if pieces == 1 { span } else { (asked.most / pieces).max(1) };
-        let (mut decoded, mut events, mut shape) = (Vec::new(), Vec::new(), None);
+        let (mut decoded, mut errors, mut events) = (Vec::new(), Vec::new(), Vec::new());
+        let mut shape = None;
         for piece in 0..pieces {
             let start = asked.from + piece * (span / pieces);
             let Some(values) = all.values.get(start..to.min(start + length)) else { continue };
             let part = Recording::of(String::new(), values.to_vec(), all.rate);
-            let (_, mut trial) = asked.choice.trial(&part)?;
+            let (coded, mut trial) = asked.choice.trial(&part)?;
+            let pairs = trial.decoded.iter().zip(&coded.values);
+            errors.extend(pairs.map(|(decoded, coded)| decoded - coded));
             decoded.append(&mut trial.decoded);
             let own = trial.events.into_iter();
             events.extend(own.map(|own| Event { sample: own.sample + start as u64, ..own }));
@@ -157,6 +169,7 @@ pub(crate) fn preview(asked: &Preview) -> Result<Value> {
         }
         let shape = shape.context("nothing is in view")?;
         send("decoded", &decoded);
+        send("errors", &errors);
         send_events(&events);
         Ok(json!({
             "from": asked.from,

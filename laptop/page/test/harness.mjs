@@ -49,8 +49,11 @@ function browser(theme) {
   return (browsers[engine === "firefox" ? theme : ""] ??= engines[engine](path, theme));
 }
 
-/** Opens the page anew. */
-export async function opened({ colorScheme = "light", isMobile, ...options } = {}, hash = "", before = undefined) {
+/** Step-forward with the parameters that the signal tells, in place of the bank that flew: its figures are easy to say. */
+const PLAIN = "#s=%3Dsf%2Bf32";
+
+/** Opens the page anew; with everything unfolded, unless it is wanted as it opens. */
+export async function opened({ colorScheme = "light", isMobile, isFolded, ...options } = {}, hash = PLAIN, before = undefined) {
   const own = engine === "firefox" ? { colorScheme: null, reducedMotion: null, forcedColors: null, contrast: null } : { colorScheme, isMobile };
   const context = await (await browser(colorScheme)).newContext({ acceptDownloads: true, ...options, ...own });
   const page = await context.newPage();
@@ -67,7 +70,25 @@ export async function opened({ colorScheme = "light", isMobile, ...options } = {
   });
   await page.goto(url + hash);
   await settled(page);
+  if (!isFolded) await unfold(page);
   return page;
+}
+
+/** Opens all that is folded. */
+export const unfold = (page) => page.evaluate(() => { for (const own of document.querySelectorAll("details")) own.open = true; });
+
+/** Opens the part below the picture whose button this is. */
+export async function drawer(page, button) {
+  if ((await page.getAttribute(button, "aria-expanded")) !== "true") await page.click(button);
+}
+
+/** Goes to another page of the page. */
+export const go = (page, name) => page.click(`[data-goes=${name}]`);
+
+/** Says the unit of the sensor, which the page asks for where no log tells it. */
+export async function say(page, unit) {
+  await page.selectOption("#unit", unit);
+  await settled(page);
 }
 
 /** Waits until the page has computed what was asked. */
@@ -111,10 +132,14 @@ export async function saved(page, button) {
   return readFileSync(await download.path());
 }
 
-export const exported = (page, kind) => saved(page, `[data-save=${kind}]`);
+export async function exported(page, kind) {
+  await drawer(page, "#more-formats");
+  return saved(page, `[data-save=${kind}]`);
+}
 
 export async function text(page, kind) {
   await page.evaluate(() => (document.getElementById("out").value = ""));
+  if (kind !== "flight") await drawer(page, "#more-formats");
   await page.click(`[data-text=${kind}]`);
   await page.waitForSelector("#take-error:visible, #text:visible");
   await page.waitForFunction(() => document.getElementById("out").value !== "" || document.getElementById("take-error").textContent);
@@ -122,7 +147,11 @@ export async function text(page, kind) {
   return page.inputValue("#out");
 }
 
-export const figure = async (page, name) => (await page.locator("#figures tr", { has: page.getByRole("rowheader", { name, exact: true }) }).locator("td").allTextContents()).join(" ");
+/** The row of a figure, in whichever unit. */
+export const figure = (page, name) => page.evaluate((own) => {
+  const row = [...document.querySelectorAll("#figures tbody tr")].find(({ cells: [head] }) => head.textContent === own || head.textContent.startsWith(`${own}, `));
+  return row ? [...row.cells].slice(1).map(({ textContent }) => textContent).join(" ") : "";
+}, name);
 
 /** The spikes that are drawn, as lines of the program's table. */
 const drawn = (page) => page.evaluate(() => {

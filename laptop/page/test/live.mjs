@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { accessible, drop, opened, saved, settled, spikewire, text, work } from "./harness.mjs";
+import { accessible, drop, enter, go, opened, saved, settled, spikewire, text, work } from "./harness.mjs";
 import { link } from "./made.mjs";
 
 export const steps = {
@@ -28,6 +28,7 @@ export const steps = {
     assert.deepEqual(ours, theirs.map(([tick, ...rest]) => [ticks.indexOf(tick) + 1, ...rest]));
     const live = () => page.waitForFunction(() => /[1-9][\d,]* events in this frame/.test(document.getElementById("video-figures").textContent));
     const cleared = () => page.evaluate(() => (document.getElementById("video-figures").textContent = ""));
+    await go(page, "video");
     await page.click("#camera");
     await live();
     await accessible(page, "a camera");
@@ -62,6 +63,7 @@ export const steps = {
   async "listens to a board as the program does, or says why not"() {
     const without = await opened();
     await without.evaluate(() => Object.defineProperty(navigator, "serial", { value: undefined }));
+    await go(without, "board");
     await without.click("#connect");
     assert.match(await without.textContent("#board-error"), /reads no serial port/);
     await without.context().close();
@@ -73,6 +75,7 @@ export const steps = {
     const heard = async (kind) => (await saved(page, `[data-heard=${kind}]`)).toString();
     const listened = async (speaks) => {
       await page.evaluate((own) => (globalThis.speaks = own), [...speaks]);
+      await go(page, "board");
       await page.click("#connect");
       await page.waitForSelector("#board-files:visible, #board-error:visible");
       assert.equal(await page.textContent("#board-error"), "");
@@ -85,11 +88,13 @@ export const steps = {
     ]) {
       await page.selectOption("#scheme", scheme);
       await settled(page);
-      for (const [name, value] of Object.entries(settings)) await page.fill(`#parameter-${name}`, value);
+      for (const [name, value] of Object.entries(settings)) await enter(page, `#parameter-${name}`, value);
       await settled(page);
-      await page.fill("#thresholds", more[1] ?? "");
+      await enter(page, "#thresholds", more[1] ?? "");
       await listened(bytes);
+      await go(page, "log");
       writeFileSync(toml, await text(page, "toml"));
+      await go(page, "board");
       const theirs = spikewire("listen", captured, "--params", toml, ...more).toString();
       assert.equal(await heard("values"), theirs, scheme);
       assert.equal(await heard("spikes"), spikewire("convert", "--from", "link", "--to", "csv", captured).toString());
@@ -97,8 +102,10 @@ export const steps = {
       assert.match(await page.textContent("#board-words"), /1 lost in 1 gaps/);
       assert.equal(await page.evaluate(() => globalThis.asked.baudRate), 921600);
       values += theirs.split("\n").length - 2;
+      await go(page, "log");
     }
     // A file of the same bytes says the same.
+    await go(page, "board");
     const port = await saved(page, "[data-heard=values]");
     await page.selectOption("#meaning", "spikes");
     await drop(page, { name: "captured.link", bytes });
@@ -110,8 +117,10 @@ export const steps = {
     assert((await saved(page, "[data-heard=values]")).equals(port));
     console.log(`  ${values} values of ${bytes.length} bytes in three ways`);
     await accessible(page, "a board");
+    await go(page, "log");
     await page.selectOption("#scheme", "grf-slots");
     await settled(page);
+    await go(page, "board");
     await page.click("#connect");
     await page.waitForFunction(() => /grf-slots needs the length of/.test(document.getElementById("board-error").textContent));
     // Amid the stream: what came is shown, and the port is closed when the user stops.

@@ -24,7 +24,7 @@ export const steps = {
     const coded = Date.now() - start - read;
     // A knob shows what it does long before the whole is coded again, of the whole and of a part.
     const dragged = () => page.evaluate(async () => {
-      const { plots } = globalThis.spikewire, slider = document.querySelector("#parameters input[type=range]"), previews = [];
+      const { plots } = globalThis.spikewire, slider = document.querySelector("#main-parameter input[type=range]"), previews = [];
       const drawn = async (before) => {
         while (plots.runs[0] === before) await new Promise(requestAnimationFrame);
         return plots.runs[0];

@@ -3,8 +3,18 @@
 import assert from "node:assert/strict";
 import { readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
-import { accessible, apart, DATA, enter, figure, opened, PAGE, picture, settled, text } from "./harness.mjs";
+import { accessible, apart, DATA, drawer, enter, figure, go, opened, PAGE, picture, settled, text, unfold } from "./harness.mjs";
 import { amplitudes } from "../js/spectrum.js";
+
+/** Windows that show all of it without scrolling, and smaller ones. */
+const WHOLE = { wide: { width: 1440, height: 900 }, low: { width: 1280, height: 720 }, huge: { width: 1920, height: 1080 } };
+const SIZES = {
+  wide: { viewport: WHOLE.wide },
+  low: { viewport: WHOLE.low },
+  small: { viewport: { width: 1024, height: 768 } },
+  tablet: { viewport: { width: 820, height: 1180 } },
+  phone: { viewport: { width: 390, height: 800 }, hasTouch: true, isMobile: true },
+};
 
 export const steps = {
   async "is ready soon, with a flight and nothing asked of the network"() {
@@ -16,19 +26,66 @@ export const steps = {
     await page.context().close();
   },
 
-  async "shows all of it in one window, six axes, and values under the pointer"() {
-    for (const viewport of [{ width: 1440, height: 900 }, { width: 1024, height: 768 }]) {
-      const page = await opened({ viewport });
+  async "fills one window without scrolling, almost half of it with the chart"() {
+    for (const [name, viewport] of Object.entries(WHOLE)) {
+      const page = await opened({ viewport, isFolded: true }, "");
       await axesDrawn(page);
-      for (const id of ["parameter-threshold", "figures", "plots", "under"]) {
+      const { stack, scrolls } = await page.evaluate(() => {
+        const { width, height, top, bottom } = document.getElementById("stack").getBoundingClientRect();
+        const charts = [...document.querySelectorAll("#plots .uplot")].map((own) => own.getBoundingClientRect());
+        return {
+          stack: { area: width * height, top, bottom, least: Math.min(...charts.map((own) => own.height)), end: Math.max(...charts.map((own) => own.bottom)) },
+          scrolls: [document.documentElement, ...document.querySelectorAll("#rail, #settings")].filter((own) => own.scrollHeight > own.clientHeight + 1).map((own) => own.id || "page"),
+        };
+      });
+      const share = stack.area / (viewport.width * viewport.height);
+      console.log(`  ${viewport.width} x ${viewport.height}: the chart takes ${(100 * share).toFixed(0)} % of the window`);
+      assert(share >= 0.45, `${name}: ${share}`);
+      assert.deepEqual(scrolls, [], name);
+      assert(stack.end <= stack.bottom + 1 && stack.least > 40, `${name}: charts end at ${stack.end} of ${stack.bottom}, the lowest has ${stack.least}`);
+      for (const id of ["parameter-threshold", "cards", "filter", "keyframes", "tiles", "plots", "under", "chip", "flight-file", "axes"]) {
         const { y, height } = await page.locator(`#${id}`).boundingBox();
         assert(y >= 0 && y + height <= viewport.height, `${id} from ${y} to ${y + height} in a window of ${viewport.width} x ${viewport.height}`);
       }
-      await picture(page, `page-${viewport.width}`);
+      // One time axis for all, shown once, below a signal that is as wide as everything else.
+      assert.equal(await page.evaluate(() => globalThis.spikewire.plots.all.filter((own) => own.axes[0].label).length), 1);
       await page.context().close();
     }
-    const page = await opened({ viewport: { width: 1440, height: 900 } });
+  },
+
+  async "drags the threshold on the signal, zooms in the overview, and shows values under the pointer"() {
+    const page = await opened({ viewport: WHOLE.wide });
+    await axesDrawn(page);
     const flight = join(DATA, "hexarotor.csv");
+    const threshold = async () => Number(await page.inputValue("#parameter-threshold")), before = await threshold();
+    const band = await page.locator(".band").boundingBox(), spikes = await figure(page, "Spikes");
+    await page.mouse.move(band.x + 200, band.y);
+    await page.mouse.down();
+    await page.mouse.move(band.x + 200, band.y - band.height / 2, { steps: 4 });
+    await page.mouse.up();
+    await settled(page);
+    const after = await threshold(), grown = await page.locator(".band").boundingBox();
+    assert(Math.abs(after / before - 2) < 0.15, `${before} to ${after}`);
+    assert(Math.abs(grown.height / band.height - 2) < 0.15, `${band.height} to ${grown.height}`);
+    assert.notEqual(await figure(page, "Spikes"), spikes);
+    assert.match(await page.textContent(".band"), new RegExp(`± ${after} rad/s`));
+    await page.click("#undo");
+    await settled(page);
+    assert.equal(await threshold(), before);
+    const overview = await page.locator("#overview").boundingBox();
+    const brush = async (from, to) => {
+      await page.mouse.move(overview.x + from, overview.y + 20);
+      await page.mouse.down();
+      await page.mouse.move(overview.x + to, overview.y + 20, { steps: 4 });
+      await page.mouse.up();
+    };
+    const view = () => page.evaluate(() => globalThis.spikewire.plots.view);
+    await brush(200, 400);
+    const [left, right] = await view(), length = right - left;
+    assert(left > 1 && length > 2 && length < 10, `${left} to ${right}`);
+    await brush(300, 350);
+    assert(Math.abs((await view())[1] - (await view())[0] - length) < 1e-6 && (await view())[0] > left + 0.5, "the brush moves what is in view");
+    await page.locator("#overview").dblclick();
     const plot = await page.locator("#plots .u-over").first().boundingBox();
     await page.mouse.move(plot.x + plot.width / 2, plot.y + 20);
     await page.mouse.down();
@@ -42,7 +99,7 @@ export const steps = {
     assert.equal(value, written);
     const short = (number) => String(Number(number.toPrecision(4)));
     const under = await page.textContent("#under");
-    assert(under.includes(`gyro_x ${short(value)}`) && under.includes(` ${short(decoded)}`) && /from the mark [\d.]+ s/.test(under), under);
+    assert(under.includes(`gyro_x ${short(value)} rad/s`) && under.includes(` ${short(decoded)} rad/s (off by ${short(decoded - value)})`) && /from the mark [\d.]+ s/.test(under), under);
     // Another axis is opened from its strip.
     await page.locator(".axis").nth(4).click();
     await page.waitForTimeout(50);
@@ -52,54 +109,59 @@ export const steps = {
     const count = Number((await figure(page, "Spikes a second")).replaceAll(",", ""));
     await page.waitForFunction((own) => document.querySelectorAll(".axis span")[4].textContent.includes(`: ${own.toLocaleString("en")} spikes a second`), count);
     // Power at a frequency where there is some, and an error whose shares are a whole.
-    await page.click("#spectrum-box summary");
+    await drawer(page, "#show-spectrum");
     await page.waitForSelector("#spectrum canvas");
     assert.equal(await page.locator("#spectrum canvas").count(), 2);
     await accessible(page, "six axes and a spectrum");
     await page.context().close();
-    const sine = Float64Array.from({ length: 4096 }, (_, sample) => 3 * Math.sin((2 * Math.PI * sample) / 16));
+    const sine = Float64Array.from({ length: 4096 }, (_, at) => 3 * Math.sin((2 * Math.PI * at) / 16));
     const heights = amplitudes(sine, 0, sine.length);
     const peak = heights.indexOf(Math.max(...heights));
     assert.equal((peak + 1) / (2 * (heights.length + 1)), 1 / 16);
     assert(Math.abs(heights[peak] - 3) < 0.02, `a sine of 3 has the height ${heights[peak]}`);
   },
 
-  async "is clean for everybody: three sizes, light and dark, nothing on anything else, nothing undecided"() {
-    for (const [size, options] of Object.entries({
-      wide: { viewport: { width: 1440, height: 900 } },
-      low: { viewport: { width: 1024, height: 768 } },
-      phone: { viewport: { width: 390, height: 800 }, hasTouch: true, isMobile: true },
-    })) for (const colorScheme of ["light", "dark"]) {
-      const page = await opened({ ...options, colorScheme }), what = `${size}, ${colorScheme}`;
+  async "is clean for everybody: five sizes, light and dark, nothing on anything else, nothing undecided"() {
+    for (const [size, options] of Object.entries(SIZES)) for (const colorScheme of ["light", "dark"]) {
+      const page = await opened({ ...options, colorScheme, isFolded: true }, ""), what = `${size}, ${colorScheme}`;
       assert.equal(await page.evaluate(() => matchMedia("(prefers-color-scheme: dark)").matches), colorScheme === "dark");
       const looked = async (at) => {
         await apart(page, `${what}, ${at}`);
         await accessible(page, `${what}, ${at}`);
         const wide = await page.evaluate(() => document.documentElement.scrollWidth);
         assert(wide <= options.viewport.width, `${what}, ${at}: ${wide} wide`);
-        await picture(page, `page-${size}-${colorScheme}-${at}`, { fullPage: true });
+        await picture(page, `page-${size}-${colorScheme}-${at.replaceAll(" ", "-")}`, { fullPage: true });
       };
       await axesDrawn(page);
       await looked("as it opens");
-      // All that can be shown at once: four settings, spectra, a front, a constant, and errors.
-      for (const scheme of ["sod", "grf", "hsa"]) {
+      // All that can be shown: four settings, everything unfolded, and each part below the picture.
+      for (const scheme of ["sf", "grf", "hsa"]) {
         await page.click("#add");
         await page.selectOption("#scheme", scheme);
         await settled(page);
       }
-      await page.click("#spectrum-box summary");
-      await text(page, "rust");
+      await unfold(page);
       await page.click("#tab-0");
+      await page.click("#chip");
+      await drawer(page, "#show-spectrum");
+      await axesDrawn(page);
+      await looked("compared");
+      await drawer(page, "#show-search");
       await enter(page, "#evaluations", "64");
       await page.click("#tune");
       await page.waitForSelector("#front circle");
       await page.waitForSelector("#tune:enabled");
-      await page.fill("#parameter-threshold", "-1");
+      await looked("searched");
+      await text(page, "rust");
+      await enter(page, "#parameter-threshold", "-1");
       await settled(page);
+      await looked("wrong");
+      await go(page, "board");
       await page.click("#connect");
       await page.waitForSelector("#board-error:visible");
-      await axesDrawn(page);
-      await looked("with all of it");
+      await accessible(page, `${what}, a board`);
+      await go(page, "help");
+      await accessible(page, `${what}, help`);
       await page.context().close();
     }
   },
@@ -107,5 +169,5 @@ export const steps = {
 
 /** All six axes are coded by the settings. */
 async function axesDrawn(page) {
-  await page.waitForFunction(() => document.querySelectorAll(".axis span").length === 6 && [...document.querySelectorAll(".axis span")].every((words) => /RMSE/.test(words.textContent) || /:/.test(words.textContent)));
+  await page.waitForFunction(() => document.querySelectorAll(".axis span").length === 6 && [...document.querySelectorAll(".axis span")].every((words) => /:/.test(words.textContent)));
 }

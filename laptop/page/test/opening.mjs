@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { choose, compare, DATA, drop, enter, exported, LOGS, opened, settled, spikewire, text, work } from "./harness.mjs";
+import { choose, compare, DATA, drawer, drop, enter, exported, LOGS, opened, settled, spikewire, text, work } from "./harness.mjs";
 import { bag, decoded, euroc, mcap, px4, px4Raw, ulog } from "./made.mjs";
 import { wanted } from "../js/channels.js";
 
@@ -59,9 +59,12 @@ export const steps = {
     assert.match(await page.textContent("#about"), /^b\.csv: w_RS_S_x/);
     await drop(page, { name: "px4.ulg", bytes: px4() });
     assert.equal(await page.isVisible("#of-files"), false);
-    const found = await page.locator("#channels option").evaluateAll((all) => all.map(({ value }) => value));
-    assert(found.includes("actuator_outputs · output[2]"), found.join());
-    await page.fill("#find", "actuator_outputs · output[2]");
+    await page.fill("#find", "output[");
+    assert.deepEqual(await page.locator("#found button").allTextContents(), [0, 1, 2, 3].map((own) => `actuator_outputs · output[${own}]`));
+    await page.fill("#find", "nothing");
+    assert.match(await page.textContent("#found"), /no channel has “nothing” in its name/);
+    await page.fill("#find", "OUTPUT[2]");
+    await page.locator("#found button").click();
     await settled(page);
     assert.deepEqual([await page.inputValue("#topic"), await page.inputValue("#field")], ["actuator_outputs", "output[2]"]);
     assert.match(await page.textContent("#about"), /output\[2\], 200 samples/);
@@ -132,6 +135,7 @@ export const steps = {
     const whole = readFileSync(join(LOGS, "log.mcap"));
     // Everything that can be made of a recording is there before the first refusal.
     await text(page, "flight");
+    await drawer(page, "#show-search");
     await enter(page, "#evaluations", 32);
     await page.click("#tune");
     await page.waitForSelector("#front circle");
@@ -149,19 +153,25 @@ export const steps = {
       const error = await page.textContent("#file-error");
       assert.match(error, words, `${name}: ${error}`);
       assert(await page.isVisible("#file-error"));
-      // Nothing of the recording before stands under the name of this one; a table of words shows its own channels, to choose another.
-      const isTable = name === "words.csv";
-      assert.doesNotMatch(await page.evaluate(() => document.body.innerText), /hexarotor|gyro_x|accel/, name);
-      assert.equal(await page.locator("#front circle").count(), 0, name);
-      assert.equal(await page.inputValue("#out"), "", name);
-      if (isTable) assert.deepEqual(await page.locator("#field option").allTextContents(), ["a", "b"]);
-      for (const id of ["about", ...(isTable ? [] : ["channel"]), "file-notes", "settings", "picture", "take", "search"]) assert.equal(await page.isVisible(`#${id}`) && await page.innerText(`#${id}`) !== "", false, `${name}: ${id}`);
+      // The picture of the recording before stays, dimmed and under its own name, and nothing of it can be changed; a table of words shows its own channels, to choose another.
+      assert.match(await page.textContent("#notice"), /^The picture is still that of hexarotor\.csv\.$/, name);
+      assert.match(await page.textContent("#about"), /^hexarotor\.csv: gyro_x/, name);
+      assert.deepEqual(await page.evaluate(() => [...["picture", "settings"].map((id) => document.getElementById(id).inert), document.body.classList.contains("dimmed")]), [true, true, true], name);
+      assert.equal(await page.isDisabled("#flight-file"), true, name);
+      if (name === "words.csv") assert.deepEqual(await page.locator("#field option").allTextContents(), ["a", "b"]);
     }
+    // Back, and all is as it was.
+    const figures = await page.textContent("#figures");
+    await page.click("#back");
+    await settled(page);
+    assert.deepEqual([await page.textContent("#file-error"), await page.isVisible("#notice"), await page.isDisabled("#flight-file")], ["", false, false]);
+    assert.equal(await page.textContent("#figures"), figures);
+    await drop(page, { name: "cut.ulg", bytes: ulog().subarray(0, 900) });
     await page.check("#accept-cut");
     await page.waitForFunction(() => /cut\.ulg/.test(document.getElementById("about").textContent));
     await settled(page);
     assert.equal(await page.textContent("#file-error"), "");
-    await page.click("[data-example=paper]");
+    await page.selectOption("#example", "paper");
     await page.waitForFunction(() => /signal\.csv/.test(document.getElementById("about").textContent));
     await settled(page);
     const paper = join(work, "paper.csv");
@@ -178,12 +188,20 @@ export const steps = {
     await page.waitForTimeout(50);
     await settled(page);
     assert.match(await page.textContent("#file-error"), /`a` is not a number/);
-    assert.equal(await page.isVisible("#picture"), false);
+    assert.equal(await page.evaluate(() => document.getElementById("picture").inert), true);
     await page.selectOption("#field", "rate, raw");
     await page.waitForTimeout(50);
     await settled(page);
-    assert.equal(await page.isVisible("#picture"), true);
+    assert.equal(await page.evaluate(() => document.getElementById("picture").inert), false);
     assert.equal(await page.textContent("#file-error"), "");
+    // A flat channel, a single sample, and a file without a channel: a sentence, and the page goes on.
+    for (const [name, bytes, id, words] of [
+      ["flat.csv", "x\n1\n1\n1\n", "error", /^x is 1 in all its samples, .* choose another channel/], ["one.csv", "x\n5\n", "error", /^x is 5 in all its samples/],
+      ["none.csv", "time_us\n1\n2\n", "file-error", /^none\.csv: it has no channel of numbers .* open another file/],
+    ]) {
+      await drop(page, { name, bytes: Buffer.from(bytes) });
+      assert.match(await page.textContent(`#${id}`), words);
+    }
     await page.context().close();
   },
 };

@@ -9,12 +9,13 @@ import { steps as looks } from "./looks.mjs";
 import { steps as opening } from "./opening.mjs";
 import { steps as search } from "./search.mjs";
 import { steps as settings } from "./settings.mjs";
+import { steps as truth } from "./truth.mjs";
 
 const only = process.argv[2] ?? "";
 let failed = 0;
 for (const engine of (process.env.ENGINES ?? "chromium firefox").split(" ")) {
   await use(engine);
-  for (const [name, step] of Object.entries({ ...looks, ...opening, ...settings, ...banks, ...search, ...live, ...long })) {
+  for (const [name, step] of Object.entries({ ...looks, ...truth, ...opening, ...settings, ...banks, ...search, ...live, ...long })) {
     if (!name.includes(only)) continue;
     const start = Date.now();
     try {

@@ -1,13 +1,14 @@
 // Searches in another thread.
 
 import assert from "node:assert/strict";
-import { accessible, enter, figure, opened, settled, text } from "./harness.mjs";
+import { accessible, drawer, enter, figure, opened, settled, text } from "./harness.mjs";
 
 export const steps = {
   async "searches in another thread, and stops"() {
     const page = await opened();
     await page.selectOption("#scheme", "sod");
     await settled(page);
+    await drawer(page, "#show-search");
     await enter(page, "#evaluations", "128");
     await page.click("#tune");
     await page.waitForSelector("#front circle");

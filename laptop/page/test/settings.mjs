@@ -3,29 +3,29 @@
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { accessible, choose, compare, DATA, drop, engine, enter, exported, figure, opened, picture, PICTURES, settled, spikewire, text, work } from "./harness.mjs";
+import { accessible, choose, compare, DATA, drop, engine, enter, exported, figure, opened, picture, PICTURES, say, settled, spikewire, text, work } from "./harness.mjs";
 import { decoded } from "./made.mjs";
 
 export const steps = {
   async "takes steps back and forth, and a flight's file both ways"() {
     const page = await opened();
-    const first = await page.innerText("#figures");
+    const first = await page.textContent("#figures");
     await page.selectOption("#scheme", "sod");
     await settled(page);
     await page.fill("#parameter-threshold", "0.25");
     await settled(page);
-    const changed = await page.innerText("#figures");
+    const changed = await page.textContent("#figures");
     await page.click("#undo");
     await settled(page);
     await page.click("#undo");
     await settled(page);
-    assert.equal(await page.innerText("#figures"), first);
+    assert.equal(await page.textContent("#figures"), first);
     assert.equal(await page.isDisabled("#undo"), true);
     await page.keyboard.press("Control+y");
     await settled(page);
     await page.click("#redo");
     await settled(page);
-    assert.equal(await page.innerText("#figures"), changed);
+    assert.equal(await page.textContent("#figures"), changed);
     assert.equal(await page.isDisabled("#redo"), true);
     await page.waitForFunction(() => [...document.querySelectorAll(".axis span")].every((words) => /spikes a second/.test(words.textContent)));
     const toml = await text(page, "flight");
@@ -55,29 +55,35 @@ export const steps = {
     const [head, ...lines] = readFileSync(join(DATA, "hexarotor.csv"), "utf8").trim().split("\n"), flight = join(work, "fast.csv");
     writeFileSync(flight, [head, ...lines.map((line, sample) => line.replace(/^\d+/, 2000 * sample)), ""].join("\n"));
     await choose(page, flight);
-    const flies = async () => (await figure(page, "Does it fly?"));
+    const chip = () => page.textContent("#chip");
+    await say(page, "rad/s");
+    await page.locator(".axis").nth(3).click();
+    await settled(page);
+    await say(page, "m/s²");
+    await page.locator(".axis").nth(0).click();
+    await settled(page);
     await page.selectOption("#scheme", "bernoulli");
     await settled(page);
-    assert.equal(await flies(), "not flown");
+    assert.equal(await chip(), "Not flown");
     assert.equal(await page.isVisible("#as-flown"), false);
     await page.selectOption("#scheme", "sf");
     await settled(page);
-    assert.equal(await flies(), "no");
+    assert.equal(await chip(), "Does not fly");
     await page.selectOption("#scheme", "sod");
     await settled(page);
-    assert.equal(await flies(), "not known");
-    assert.match(await page.textContent("#verdict"), /threshold 0\.09315, a low-pass of 80 Hz, keyframes every 200 ms/);
+    assert.equal(await chip(), "Not as flown");
+    assert.match(await page.textContent("#verdict"), /threshold 0\.09315 where this is coarser, .*a low-pass of 80 Hz, keyframes every 200 ms/);
     const bytes = Number((await figure(page, "Bytes a second, with keyframes")).replaceAll(",", ""));
     await page.click("#as-flown");
     await settled(page);
-    assert.equal(await flies(), "in simulation");
+    assert.equal(await chip(), "Flew so in simulation");
     assert.deepEqual([await page.inputValue("#filter"), await page.inputValue("#corner"), await page.inputValue("#keyframes")], ["low-pass", "80", "200"]);
     const late = Number(await figure(page, "Late by, ms"));
     assert(late > 0, `${late} ms`);
     await enter(page, "#keyframes", 20);
     await settled(page);
     const more = Number((await figure(page, "Bytes a second, with keyframes")).replaceAll(",", ""));
-    assert.equal(await flies(), "not known");
+    assert.equal(await chip(), "Not as flown");
     await enter(page, "#keyframes", 200);
     await settled(page);
     const own = Number((await figure(page, "Bytes a second, with keyframes")).replaceAll(",", ""));
@@ -96,20 +102,24 @@ export const steps = {
     await page.locator(".axis").nth(5).click();
     await settled(page);
     assert.equal(Number(await page.inputValue("#parameter-threshold")).toPrecision(3), "8.46");
-    assert.equal(await flies(), "in simulation");
+    assert.equal(await chip(), "Flew so in simulation");
     assert.equal(String(rows(theirs, "5").length), (await figure(page, "Spikes")).replaceAll(",", ""));
     // All of it is in a link, and in the file.
-    const figures = await page.innerText("#figures"), link = await text(page, "link");
+    const figures = await page.textContent("#figures"), link = await text(page, "link");
     const other = await opened();
     await choose(other, flight);
     await other.evaluate((hash) => (location.hash = hash), new URL(link).hash);
     await settled(other);
-    assert.equal(await other.innerText("#figures"), figures);
+    // The settings of the link stand as they are, and the unit is asked for here too.
+    const numbers = (words) => words.replace("RMSE, m/s²", "RMSE");
+    assert.equal(await other.textContent("#figures"), numbers(figures));
+    await say(other, "m/s²");
+    assert.equal(await other.textContent("#figures"), figures);
     await other.selectOption("#scheme", "hsa");
     await other.selectOption("#filter", "none");
     await settled(other);
     await choose(other, file);
-    assert.equal(await other.innerText("#figures"), figures);
+    assert.equal(await other.textContent("#figures"), figures);
     // In a log of degrees the thresholds are degrees.
     await drop(other, { name: "decoded.csv", bytes: decoded() });
     await other.selectOption("#scheme", "sod");
@@ -193,16 +203,16 @@ export const steps = {
     await settled(page);
     assert.equal(await page.isVisible("#add"), false);
     // A series is hidden and shown again by its name.
-    const shown = () => page.evaluate(() => globalThis.spikewire.plots.data().slice(1).map((own) => own.some((value) => value !== null)));
+    const shown = () => page.evaluate(() => globalThis.spikewire.plots.data()[0].slice(1).map((own) => own.some((value) => value !== null)));
     await page.locator("#legend button").nth(1).click();
     assert.deepEqual(await shown(), [true, false, true, true, true]);
     await page.locator("#legend button").nth(1).click();
     assert.deepEqual(await shown(), [true, true, true, true, true]);
-    const figures = await page.innerText("#figures");
+    const figures = await page.textContent("#figures");
     const link = await text(page, "link");
     await accessible(page, "four settings");
     const other = await opened({}, new URL(link).hash);
-    assert.equal(await other.innerText("#figures"), figures);
+    assert.equal(await other.textContent("#figures"), figures);
     if (PICTURES && engine === "chromium") await pictured(other);
     // Pasted into a page that is open: at an example, and with a file of one's own.
     const pasted = async (hash) => {
@@ -210,12 +220,12 @@ export const steps = {
       await page.waitForTimeout(50);
       await settled(page);
     };
-    await page.click("[data-example=paper]");
+    await page.selectOption("#example", "paper");
     await page.waitForFunction(() => /signal\.csv/.test(document.getElementById("about").textContent));
     await settled(page);
     await pasted(new URL(link).hash);
     assert.match(await page.textContent("#about"), /gyro_x, 3,627 samples/);
-    assert.equal(await page.innerText("#figures"), figures);
+    assert.equal(await page.textContent("#figures"), figures);
     await drop(page, { name: "own.csv", bytes: Buffer.from("a,b\n0,0\n1,5\n0,9\n") });
     await pasted("field=b&s=%3Dsf%2Bf32%26threshold%3D3");
     assert.match(await page.textContent("#about"), /^own\.csv: b, 3 samples/);
@@ -233,7 +243,8 @@ async function pictured(page) {
     await page.click("#remove");
     await settled(page);
   }
-  await page.setViewportSize({ width: 1280, height: 900 });
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await page.evaluate(() => { for (const own of document.querySelectorAll("details")) own.open = false; });
   await page.click("#tab-0");
   await page.fill("#parameter-threshold", "0.35");
   await settled(page);

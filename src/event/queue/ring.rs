@@ -146,6 +146,16 @@ impl fmt::Debug for QueueView {
     }
 }
 
+/// What became of the oldest item.
+enum Removed {
+    /// It is an event with no loss before it, and taken.
+    Event(Event),
+    /// There is none, nor a loss.
+    Nothing,
+    /// It is of another kind, or a loss comes first.
+    NotYet,
+}
+
 /// The fate of an item that the queue refuses.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Refusal {
@@ -318,16 +328,20 @@ impl QueueView {
     #[inline]
     pub(super) fn take(&self) -> Option<Taken> {
         match critical_section::with(|section| self.remove_event(section)) {
-            Some(event) => Some(Taken::whole(Item::Event(event))),
-            None => self.take_apart(),
+            Removed::Event(event) => Some(Taken::whole(Item::Event(event))),
+            Removed::Nothing => None,
+            Removed::NotYet => self.take_apart(),
         }
     }
 
     /// Takes items up to and including the oldest event.
     #[inline]
     pub(super) fn take_event(&self) -> Option<Event> {
-        let event = critical_section::with(|section| self.remove_event(section));
-        if event.is_some() { event } else { self.take_event_apart() }
+        match critical_section::with(|section| self.remove_event(section)) {
+            Removed::Event(event) => Some(event),
+            Removed::Nothing => None,
+            Removed::NotYet => self.take_event_apart(),
+        }
     }
 
     /// [`take_event`](Self::take_event) where the oldest item may be no event, or there may be no item.
@@ -361,21 +375,24 @@ impl QueueView {
 
     /// Removes the oldest item if it is an event with no loss before it, as nearly all are.
     #[inline]
-    fn remove_event(&self, section: CriticalSection<'_>) -> Option<Event> {
+    fn remove_event(&self, section: CriticalSection<'_>) -> Removed {
         let state = self.state.borrow(section);
         let len = state.len.get();
-        // Neither empty nor closed.
-        if (len as isize) <= 0 {
-            return None;
+        if len == 0 {
+            return Removed::Nothing;
         }
-        let (place, next) = self.place(section, state.head.get())?;
-        let event = place.get().plain_event()?;
+        let Some((place, next)) = self.place(section, state.head.get()) else {
+            return Removed::Nothing;
+        };
+        // A closed queue looks longer than any.
+        let event = place.get().plain_event().filter(|_| len & CLOSED == 0);
+        let Some(event) = event else { return Removed::NotYet };
         state.head.set(next);
         state.len.set(len.wrapping_sub(1));
         if len > state.peak.get() {
             state.peak.set(len);
         }
-        Some(event)
+        Removed::Event(event)
     }
 
     /// The oldest item, and the head after it.

@@ -102,6 +102,15 @@ impl<S: Sample> AdaptiveStepForward<S> {
         self.threshold
     }
 
+    /// The state of an encoder with this baseline, so that its first sample counts from there instead of becoming the
+    /// baseline itself; see [`SendOnDelta::state_at`](super::SendOnDelta::state_at).
+    pub const fn state_at(baseline: S) -> AdaptiveState<S> {
+        match Tally::of_baseline(baseline) {
+            Some(tally) => AdaptiveState { base: baseline, tally, pace: Pace::REST },
+            None => Self::START,
+        }
+    }
+
     #[inline]
     fn band(&self, base: S, pace: Pace) -> Band<S> {
         Band::around(base, self.threshold.doubled(pace.exponent))

@@ -111,6 +111,27 @@ impl<S: Sample, const K: usize> SendOnDelta<S, K> {
         self.threshold
     }
 
+    /// The state of an encoder with this baseline, so that its first sample counts from there instead of becoming the
+    /// baseline itself: for [`Bank::per_channel_with_states`](crate::Bank::per_channel_with_states). From 0 on, baselines
+    /// are multiples of the threshold, whatever the first sample is. A baseline that is not finite is none, and
+    /// [`Bank::reset`](crate::Bank::reset) forgets it.
+    ///
+    /// ```
+    /// use spikewire::{Bank, Tick, temporal::SendOnDelta};
+    ///
+    /// static GYRO: SendOnDelta<i16, 16> = SendOnDelta::new(50);
+    /// let anchored = (&GYRO, SendOnDelta::<i16, 16>::state_at(0));
+    /// let mut bank = Bank::per_channel_with_states([anchored; 3]);
+    /// bank.encode(Tick::from_micros(0), [120, 7, -60], |_| ());
+    /// assert_eq!([0, 1, 2].map(|channel| bank.keyframe(channel)), [Some(100), Some(0), Some(-50)]);
+    /// ```
+    pub const fn state_at(baseline: S) -> SendOnDeltaState<S> {
+        match Tally::of_baseline(baseline) {
+            Some(tally) => SendOnDeltaState { base: baseline, tally },
+            None => Self::START,
+        }
+    }
+
     /// Follows a sample that is outside the band, the first one, or not finite.
     #[inline]
     fn follow(&self, state: &mut SendOnDeltaState<S>, sample: S) -> Steps<K> {

@@ -72,6 +72,15 @@ impl<S: Sample> StepForward<S> {
     pub const fn threshold(&self) -> S {
         self.threshold
     }
+
+    /// The state of an encoder with this baseline, so that its first sample counts from there instead of becoming the
+    /// baseline itself; see [`SendOnDelta::state_at`](super::SendOnDelta::state_at).
+    pub const fn state_at(baseline: S) -> StepForwardState<S> {
+        match Tally::of_baseline(baseline) {
+            Some(tally) => StepForwardState { base: baseline, tally },
+            None => Self::START,
+        }
+    }
 }
 
 /// The state of a [`StepForward`] encoder: the baseline. 8 bytes in `f32`.

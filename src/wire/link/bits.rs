@@ -1,5 +1,7 @@
 //! Strings of bits, high bit first, and exponential Golomb codes.
 
+use core::ops::Range;
+
 use crate::num::LACKS_DIVISION;
 use crate::wire::bytes::Cursor;
 
@@ -99,6 +101,29 @@ impl<'a> BitWriter<'a> {
         (self.bits, self.pending, self.left) = (mark.bits, mark.pending, mark.left);
     }
 
+    /// Begins behind this many bytes, which are written later. The string ends at the limit, or where the buffer has this
+    /// many bytes left.
+    #[inline]
+    pub(super) fn begin(&mut self, header: usize, limit: usize, left: usize) {
+        self.bytes.begin(header, limit, left);
+        self.left = (self.bytes.room() as i32).wrapping_mul(8);
+    }
+
+    /// Appends the first word after whole bytes. It has fewer than 32 bits, and there is room for it.
+    #[inline]
+    pub(super) fn put_lead(&mut self, lead: Word) {
+        (self.bits, self.pending) = (lead.bits, lead.count);
+        self.left = self.left.wrapping_sub(lead.count as i32);
+    }
+
+    /// Takes the [first word](Self::put_lead) away again, of a string that has no other bits.
+    pub(super) fn take_lead(&mut self) -> Word {
+        let lead = Word { bits: self.bits, count: self.pending };
+        (self.bits, self.pending) = (0, 0);
+        self.left = self.left.wrapping_add(lead.count as i32);
+        lead
+    }
+
     /// Appends a word; `None` if it has 32 bits or more, or does not fit.
     #[inline]
     pub(super) fn put_word(&mut self, word: Word) -> Option<()> {
@@ -133,18 +158,14 @@ impl<'a> BitWriter<'a> {
         self.left >= 0
     }
 
-    /// Writes the bits that are not in the buffer yet, with the last byte filled up with 0, and returns the bytes.
+    /// Writes the bits that are not in the buffer yet, with the last byte filled up with 0, and returns the bytes. Behind
+    /// its limit the buffer has 4 bytes more, which may be overwritten.
+    #[inline]
     pub(super) fn finish(&mut self) -> &mut Cursor<'a> {
-        let bytes = self.bits.unbounded_shl(32_u32.wrapping_sub(self.pending)).to_be_bytes();
-        let count = self.pending.div_ceil(8) as usize;
-        let _ = self.bytes.put(bytes.get(..count).unwrap_or_default());
+        let bits = self.bits.unbounded_shl(32_u32.wrapping_sub(self.pending));
+        self.bytes.put_some(bits.to_be_bytes(), self.pending.div_ceil(8) as usize);
         self.pending = 0;
         &mut self.bytes
-    }
-
-    /// The bytes written, for the lifetime of the buffer.
-    pub(super) fn into_slice(self) -> &'a [u8] {
-        self.bytes.into_slice()
     }
 }
 
@@ -186,6 +207,14 @@ pub(super) struct Glance {
     count: u32,
 }
 
+impl Glance {
+    /// Whether fewer than 8 bits are left, all of them 0.
+    #[inline]
+    pub(super) fn is_padding(self) -> bool {
+        self.count < 8 && self.bits == 0
+    }
+}
+
 impl TakeBits for Glance {
     #[inline]
     fn take(&mut self, count: u32) -> Option<u32> {
@@ -202,22 +231,21 @@ impl TakeBits for Glance {
     }
 }
 
-/// Takes bits from a buffer.
+/// Takes bits from a buffer that goes on behind them, as a frame does by its checksum: there 4 bytes can be read anywhere.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BitReader<'a> {
     bytes: &'a [u8],
-    /// How many bits are taken.
+    /// How many bits are taken, and how many there are.
     taken: usize,
+    end: usize,
 }
 
 impl<'a> BitReader<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Self::after(bytes, 0)
-    }
-
-    /// After the first bits.
-    pub(super) fn after(bytes: &'a [u8], taken: usize) -> Self {
-        Self { bytes, taken }
+    /// The bits from one byte to another, after the first ones. Four bytes follow; with fewer there may seem to be no bits.
+    #[inline]
+    pub(super) fn new(bytes: &'a [u8], string: Range<usize>, taken: usize) -> Self {
+        let taken = string.start.wrapping_mul(8).wrapping_add(taken);
+        Self { bytes, taken, end: string.end.wrapping_mul(8) }
     }
 
     pub(super) fn taken(&self) -> usize {
@@ -228,20 +256,11 @@ impl<'a> BitReader<'a> {
     #[inline]
     pub(super) fn glance(&self) -> Glance {
         let at = self.taken / 8;
-        let whole = self.bytes.get(at..at.wrapping_add(4)).and_then(<[u8]>::first_chunk);
-        let (bytes, count) = match whole {
-            Some(bytes) => (*bytes, 25),
-            None => self.end(),
-        };
-        Glance { bits: u32::from_be_bytes(bytes) << (self.taken % 8), taken: 0, count }
-    }
-
-    /// The last bytes, fewer than 4, filled up with 0, and how many bits of them are not taken.
-    #[cold]
-    #[inline(never)]
-    fn end(&self) -> ([u8; 4], u32) {
-        let rest = self.bytes.get(self.taken / 8..).unwrap_or_default();
-        (core::array::from_fn(|at| rest.get(at).copied().unwrap_or_default()), self.left() as u32)
+        let next = self.bytes.get(at..at.wrapping_add(4)).and_then(<[u8]>::first_chunk);
+        let bits = next.map_or(0, |bytes| u32::from_be_bytes(*bytes)) << (self.taken % 8);
+        let left = self.left() as u32;
+        let behind = u32::MAX.unbounded_shr(left);
+        Glance { bits: bits & !behind, taken: 0, count: left.min(25) }
     }
 
     /// Takes the bits that were taken from a glance; `None` if it had fewer.
@@ -254,12 +273,12 @@ impl<'a> BitReader<'a> {
 
     #[inline]
     fn left(&self) -> usize {
-        self.bytes.len().wrapping_mul(8).wrapping_sub(self.taken)
+        self.end.saturating_sub(self.taken)
     }
 
-    /// Whether fewer than 8 bits are left, all of them 0.
+    /// Whether no [bits but padding](Glance::is_padding) are left.
     pub(super) fn is_padding(self) -> bool {
-        self.left() < 8 && self.glance().bits == 0
+        self.glance().is_padding()
     }
 }
 

@@ -118,6 +118,10 @@ impl Place {
         })
     }
 
+    pub(super) fn coding(&self) -> Coding {
+        self.coding
+    }
+
     /// The tick of the last event, or of the frame.
     pub(super) fn tick(&self) -> Tick {
         self.tick
@@ -157,28 +161,25 @@ pub(super) struct ShortTime {
 impl ShortTime {
     /// Puts the bits of the time.
     #[inline]
-    pub(super) fn put(self, coding: Coding, bits: &mut impl PutBits) {
-        bits.put(self.count, coding.grid_bits());
-        put_jitter(self.jitter, coding.jitter_bits, bits);
+    pub(super) fn put(self, grid_bits: u32, jitter_bits: u8, bits: &mut impl PutBits) {
+        bits.put(self.count, grid_bits);
+        put_jitter(self.jitter, jitter_bits, bits);
     }
 
     /// Takes the bits of a time; `None` if there are too few.
     #[inline]
-    pub(super) fn take(coding: Coding, bits: &mut BitReader<'_>) -> Option<Self> {
+    pub(super) fn take(grid_bits: u32, jitter_bits: u8, bits: &mut BitReader<'_>) -> Option<Self> {
         let mut glance = bits.glance();
-        match Self::take_from(coding, &mut glance) {
+        match Self::take_from(grid_bits, jitter_bits, &mut glance) {
             Some(time) if bits.pass(glance).is_some() => Some(time),
-            _ => Self::take_from(coding, bits),
+            _ => Self::take_from(grid_bits, jitter_bits, bits),
         }
     }
 
     #[inline]
-    fn take_from(coding: Coding, bits: &mut impl TakeBits) -> Option<Self> {
-        let count = match coding.grid_bits() {
-            0 => 0,
-            grid_bits => bits.take(grid_bits)?,
-        };
-        let jitter = unzigzag(bits.take_code(coding.jitter_bits.into())?);
+    fn take_from(grid_bits: u32, jitter_bits: u8, bits: &mut impl TakeBits) -> Option<Self> {
+        let count = if grid_bits > 0 { bits.take(grid_bits)? } else { 0 };
+        let jitter = unzigzag(bits.take_code(jitter_bits.into())?);
         Some(Self { count, jitter })
     }
 }

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use super::frame::VERSION;
+
 /// Why a frame was not read or written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -49,7 +51,12 @@ impl fmt::Display for LinkError {
                 write!(f, "the frame has {needed} bytes, but {found} are here")
             }
             Self::NotAFrame { found } => write!(f, "a frame does not begin with {found:#04x}"),
-            Self::Version { found } => write!(f, "version {found} of the link is not known"),
+            Self::Version { found } => {
+                write!(
+                    f,
+                    "the frame is one of version {found} of the link, this end reads version {VERSION}"
+                )
+            }
             Self::Header => {
                 write!(f, "the frame's header has a period of 0 or keyframes that cannot be")
             }

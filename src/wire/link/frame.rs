@@ -62,6 +62,8 @@ pub(super) struct Head {
     flags: u8,
     pub(super) number: u64,
     pub(super) point: Point,
+    /// The register after what a short frame leaves out.
+    pub(super) register: Register,
     pub(super) time: Time,
     pub(super) coding: Coding,
     pub(super) fingerprint: Option<Fingerprint>,
@@ -98,6 +100,7 @@ impl Head {
             flags: flag::LOST,
             number: known.number,
             point: known.point,
+            register: Register::START,
             time: known.point.time,
             coding: known.coding,
             fingerprint: known.fingerprint,
@@ -121,6 +124,10 @@ impl Head {
 
     pub(super) const fn is_short(&self) -> bool {
         self.is_short
+    }
+
+    pub(super) const fn is_first(&self) -> bool {
+        self.flags & flag::FIRST != 0
     }
 
     fn read_full(bytes: &[u8]) -> Result<Self, LinkError> {
@@ -170,6 +177,7 @@ impl Head {
             flags,
             number: u64::from_le_bytes([n0, n1, n2, n3, n4, n5, 0, 0]),
             point,
+            register: Register::START,
             time,
             coding,
             fingerprint,
@@ -198,24 +206,29 @@ impl Head {
         let payload = body.get(header..).unwrap_or_default();
         let has_keyframes = first & short::KEYFRAMES != 0;
         let keyframes = Keyframes::read(has_keyframes, coding, payload)?;
-        let mut bits = BitReader::new(payload.get(keyframes.to..).unwrap_or_default());
+        let bits_at = header.wrapping_add(keyframes.to);
+        let mut bits = BitReader::new(bytes, bits_at..body.len(), 0);
         let ShortTime { count, jitter } =
-            ShortTime::take(coding, &mut bits).ok_or(LinkError::Header)?;
+            ShortTime::take(known.grid_bits, coding.jitter_bits, &mut bits)
+                .ok_or(LinkError::Header)?;
         let number = known.number_with(number);
-        let point = known.point_with(count);
-        verify(known.register_of(number, point).after(body), checksum)?;
+        let next = known.point_with(count);
+        let register = known.register_of(number, next);
+        verify(register.after(body), checksum)?;
+        let point = next.point;
         Ok(Self {
             is_short: true,
             flags: if has_keyframes { flag::KEYFRAMES } else { 0 },
             number,
             point,
+            register,
             time: point.time.after(i64::from(jitter).cast_unsigned()),
             coding,
             fingerprint: known.fingerprint,
             kind: keyframes.kind,
             keyframes_at: header.wrapping_add(keyframes.from) as u16,
-            bits_at: header.wrapping_add(keyframes.to) as u16,
-            time_bits: bits.taken() as u8,
+            bits_at: bits_at as u16,
+            time_bits: bits.taken().wrapping_sub(bits_at.wrapping_mul(8)) as u8,
             end: body.len() as u16,
             checksum,
         })
@@ -241,6 +254,7 @@ fn verify(register: Register, found: u32) -> Result<(), LinkError> {
 #[derive(Clone, Copy, Debug)]
 pub struct FrameView<'a> {
     head: Head,
+    /// With the checksum.
     bytes: &'a [u8],
 }
 
@@ -258,7 +272,7 @@ impl<'a> FrameView<'a> {
 
     /// A frame whose head was read from the beginning of these bytes.
     pub(super) fn with_head(head: Head, bytes: &'a [u8]) -> Self {
-        Self { head, bytes: bytes.get(..head.end.into()).unwrap_or_default() }
+        Self { head, bytes: bytes.get(..head.length()).unwrap_or_default() }
     }
 
     /// The length of the full frame that these bytes begin with, from its header.
@@ -294,7 +308,7 @@ impl<'a> FrameView<'a> {
 
     /// Whether it is the first frame of its session.
     pub fn is_first(&self) -> bool {
-        self.head.flags & flag::FIRST != 0
+        self.head.is_first()
     }
 
     /// The fingerprint of the sender's schemes, if it has one.
@@ -312,6 +326,7 @@ impl<'a> FrameView<'a> {
         self.head.time.micros()
     }
 
+    #[inline]
     pub(super) fn time(&self) -> Time {
         self.head.time
     }
@@ -357,6 +372,12 @@ impl<'a> FrameView<'a> {
         self.entries().filter_map(move |(address, _)| is_heartbeat.then_some(address))
     }
 
+    /// Whether it has keyframes or heartbeats.
+    #[inline]
+    pub(super) fn has_entries(&self) -> bool {
+        self.head.keyframes_at < self.head.bits_at
+    }
+
     /// Each keyframe or heartbeat: its address, and the bytes of its value.
     fn entries(&self) -> impl Iterator<Item = (u16, &'a [u8])> + use<'a> {
         let Head { keyframes_at, bits_at, coding, kind, .. } = self.head;
@@ -377,7 +398,7 @@ impl<'a> FrameView<'a> {
     /// The events, in the order they were written.
     pub fn events(&self) -> Events<'a> {
         let Head { bits_at, end, time_bits, coding, .. } = self.head;
-        let bits = BitReader::after(self.part(bits_at.into()..end.into()), time_bits.into());
+        let bits = BitReader::new(self.bytes, bits_at.into()..end.into(), time_bits.into());
         Events { bits, place: Place::new(coding, self.tick()) }
     }
 
@@ -467,6 +488,9 @@ impl Events<'_> {
     #[inline(always)]
     pub(super) fn next_numbered(&mut self) -> Option<Numbered> {
         let mut glance = self.bits.glance();
+        if glance.is_padding() {
+            return None;
+        }
         if let Some(next) = self.place.take(&mut glance)
             && self.bits.pass(glance).is_some()
         {

@@ -21,23 +21,26 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// The point so many periods later.
-    #[inline]
-    pub(super) fn later(self, steps: i32, coding: Coding) -> Self {
-        let micros = i64::from(steps).wrapping_mul(coding.period.get().into());
-        Self {
-            time: self.time.after(micros.cast_unsigned()),
-            count: self.count.wrapping_add(steps.cast_unsigned()) & coding.grid_mask(),
-        }
-    }
-
     /// The time of the last point whose count was 0. It is the same until the count begins anew.
-    #[inline]
     fn epoch(self, coding: Coding) -> u64 {
         // Fewer than 2²¹ µs.
         let micros = self.count.wrapping_mul(coding.period.get());
         self.time.before(micros.into()).micros()
     }
+}
+
+/// The point of a frame that comes after a known one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Next {
+    pub(super) point: Point,
+    /// Whether no count began anew between the two, so that both have one epoch.
+    is_same_epoch: bool,
+}
+
+impl Next {
+    /// Of a frame that is not begun.
+    pub(super) const NONE: Self =
+        Self { point: Point { time: Time::from_micros(0), count: 0 }, is_same_epoch: false };
 }
 
 /// The last frame of a session, as far as the next one goes on from it.
@@ -47,6 +50,8 @@ pub(super) struct Known {
     pub(super) fingerprint: Option<Fingerprint>,
     pub(super) number: u64,
     pub(super) point: Point,
+    /// The [bits](Coding::grid_bits) of a count, which cost a Cortex-M0 a call.
+    pub(super) grid_bits: u32,
     /// The register after what short frames near this number and point leave out. It changes about once a second.
     register: Register,
 }
@@ -55,7 +60,8 @@ impl Known {
     /// Before the first frame.
     pub(super) const fn nothing(coding: Coding) -> Self {
         let point = Point { time: Time::from_micros(0), count: 0 };
-        Self { coding, fingerprint: None, number: 0, point, register: Register::START }
+        let (grid_bits, register) = (coding.grid_bits(), Register::START);
+        Self { coding, fingerprint: None, number: 0, point, grid_bits, register }
     }
 
     /// After this full frame.
@@ -65,25 +71,34 @@ impl Known {
         number: u64,
         point: Point,
     ) -> Self {
-        let mut known = Self { coding, fingerprint, number, point, register: Register::START };
+        let mut known = Self { fingerprint, number, point, ..Self::nothing(coding) };
         known.register = known.left_out(number, point);
         known
     }
 
     /// After this short frame; returns the register after what it leaves out.
     #[inline]
-    pub(super) fn go_to(&mut self, number: u64, point: Point) -> Register {
-        self.register = self.register_of(number, point);
-        (self.number, self.point) = (number, point);
-        self.register
+    pub(super) fn go_to(&mut self, number: u64, next: Next) -> Register {
+        let register = self.register_of(number, next);
+        self.follow(number, next.point, register);
+        register
+    }
+
+    /// After the short frame with this number, point and [register](Self::register_of).
+    #[inline]
+    pub(super) fn follow(&mut self, number: u64, point: Point, register: Register) {
+        (self.number, self.point, self.register) = (number, point, register);
     }
 
     /// The register after what a short frame with this number and point leaves out.
     #[inline]
-    pub(super) fn register_of(&self, number: u64, point: Point) -> Register {
-        let is_as_before = number >> NUMBER_BITS == self.number >> NUMBER_BITS
-            && point.epoch(self.coding) == self.point.epoch(self.coding);
-        if is_as_before { self.register } else { self.left_out(number, point) }
+    pub(super) fn register_of(&self, number: u64, next: Next) -> Register {
+        let has_same_number = number >> NUMBER_BITS == self.number >> NUMBER_BITS;
+        if has_same_number && next.is_same_epoch {
+            self.register
+        } else {
+            self.left_out(number, next.point)
+        }
     }
 
     #[cold]
@@ -112,19 +127,37 @@ impl Known {
         session::masked(next.wrapping_add(ahead).wrapping_sub(back))
     }
 
+    #[inline]
+    const fn grid_mask(&self) -> u32 {
+        1_u32.wrapping_shl(self.grid_bits).wrapping_sub(1)
+    }
+
+    /// The point so many periods later.
+    #[inline]
+    pub(super) fn later(&self, steps: i32) -> Next {
+        let micros = i64::from(steps).wrapping_mul(self.coding.period.get().into());
+        let count = self.point.count.wrapping_add(steps.cast_unsigned());
+        let point = Point {
+            time: self.point.time.after(micros.cast_unsigned()),
+            count: count & self.grid_mask(),
+        };
+        // A count below 0 is a large number.
+        Next { point, is_same_epoch: count <= self.grid_mask() }
+    }
+
     /// The point of a short frame with this count: up to an eighth of all counts back, or ahead.
     #[inline]
-    pub(super) fn point_with(&self, count: u32) -> Point {
-        let counts = self.coding.grid_mask().wrapping_add(1);
-        let ahead = count.wrapping_sub(self.point.count) & self.coding.grid_mask();
+    pub(super) fn point_with(&self, count: u32) -> Next {
+        let counts = self.grid_mask().wrapping_add(1);
+        let ahead = count.wrapping_sub(self.point.count) & self.grid_mask();
         let back = if ahead < counts - counts / 8 { 0 } else { counts };
-        self.point.later(ahead.wrapping_sub(back).cast_signed(), self.coding)
+        self.later(ahead.wrapping_sub(back).cast_signed())
     }
 
     /// Whether a receiver that got the frame before, or lost it with others, can tell a point so many periods later.
     #[inline]
     pub(super) fn can_tell(&self, steps: i32) -> bool {
-        let counts = self.coding.grid_mask().wrapping_add(1).cast_signed();
+        let counts = self.grid_mask().wrapping_add(1).cast_signed();
         (-(counts / 8)..=counts / 2).contains(&steps)
     }
 }

@@ -40,13 +40,14 @@ impl Received<'_> {
 
 /// Finds frames of up to `N` bytes; [`MAX_FRAME`](super::MAX_FRAME) takes all.
 ///
-/// - **Order:** a frame that was already delivered, or that comes up to 65 536 frames late, is left out. So is a late
+/// - **Order:** a frame that was already delivered, or that comes up to 65 536 frames late, is left out; a short one that is
+///   more than 32 frames or an eighth of all counts (128 to 256 ms) late counts as damaged. Left out, too, is a late
 ///   frame of the three sessions before, until the present one has delivered 256 frames. Sixteen late frames in a row show
 ///   that their session goes on or is used again, and the sixteenth counts as a start.
 /// - **A session that is used again**, as where a sender's supply fails before its start was counted, begins anew where it
 ///   shows: by another first frame than that delivered, or one that comes more than sixteen frames late, by other bytes of the frame delivered last, by a time that goes
 ///   back by more than 65.5 ms while numbers rise or the other way round, or by sixteen late frames in a row.
-/// - **Memory:** about `N + 204` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
+/// - **Memory:** about `N + 210` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
 /// - **Delay:** none; a frame whose length was damaged, or whose end is missing, may delay the frames in the 255 bytes
 ///   after it, which on a quiet link are several keyframes: see [`next_after_silence`](Self::next_after_silence).
@@ -67,6 +68,7 @@ pub struct Reader<const N: usize> {
     /// Whether bytes came since then that belong to no frame, and whether the receiver heard of it.
     is_interrupted: bool,
     has_told: bool,
+    other_version: Option<u8>,
     /// How many late frames, or frames of earlier sessions, came in a row.
     strays: u16,
     /// The time and the checksum of the frame that was delivered last.
@@ -112,10 +114,17 @@ struct Run {
 impl Run {
     const NONE: Self = Self { next: 0, delivered: 0, first: None };
 
-    /// How many frames `frame` comes after the next one; `None` for no run.
-    fn ahead(&self, frame: &FrameView<'_>) -> Option<i64> {
-        (self.delivered > 0).then(|| session::ahead(frame.number(), self.next))
+    /// How many frames this one comes after the next one; `None` for no run.
+    #[inline]
+    fn ahead(&self, head: &Head) -> Option<i64> {
+        (self.delivered > 0).then(|| session::ahead(head.number, self.next))
     }
+}
+
+/// A frame, and its place among those delivered.
+struct Found {
+    head: Head,
+    standing: Standing,
 }
 
 /// The place of a frame among those delivered.
@@ -154,6 +163,7 @@ impl<const N: usize> Reader<N> {
             known: None,
             is_interrupted: false,
             has_told: false,
+            other_version: None,
             strays: 0,
             time: Time::from_micros(0),
             checksum: 0,
@@ -178,12 +188,18 @@ impl<const N: usize> Reader<N> {
         self.next(&mut [].as_slice(), true)
     }
 
+    #[inline]
     fn next(&mut self, input: &mut &[u8], is_silent: bool) -> Option<Received<'_>> {
         self.start = self.start.wrapping_add(core::mem::take(&mut self.handed_out));
         if self.start == self.end && input.is_empty() {
             return None;
         }
-        let (head, standing) = self.find(input, is_silent)?;
+        self.deliver(input, is_silent)
+    }
+
+    #[inline(never)]
+    fn deliver(&mut self, input: &mut &[u8], is_silent: bool) -> Option<Received<'_>> {
+        let Found { head, standing } = self.find(input, is_silent)?;
         if standing == Standing::Unread {
             let frame = FrameView::with_head(head, &[]);
             return Some(Received { gap: None, is_start: false, is_unread: true, frame });
@@ -191,42 +207,51 @@ impl<const N: usize> Reader<N> {
         self.handed_out = head.length();
         match &mut self.known {
             Some(known) if head.is_short() => {
-                known.go_to(head.number, head.point);
+                known.follow(head.number, head.point, head.register);
             }
             known => *known = Some(head.known()),
         }
-        let checksum = head.checksum;
-        let frame = FrameView::with_head(head, self.buffer.get(self.start..self.end)?);
         self.frames = self.frames.saturating_add(1);
-        (self.is_interrupted, self.has_told) = (false, false);
-
-        let next = session::next(frame.number());
-        (self.time, self.checksum) = (frame.time(), checksum);
-        let [present, earlier @ ..] = &mut self.sessions;
+        (self.is_interrupted, self.has_told, self.other_version) = (false, false, None);
+        (self.time, self.checksum) = (head.time, head.checksum);
         let is_start = standing == Standing::First;
         if is_start {
-            // Of a session that is used again, the frames before are not those of another one.
-            let is_other =
-                present.ahead(&frame).is_none_or(|ahead| !(-LATE..LONGEST_GAP).contains(&ahead));
-            if is_other {
-                let [second, third, _] = *earlier;
-                *earlier = [*present, second, third];
+            self.start_session(&head);
+        }
+        let [present, earlier @ ..] = &mut self.sessions;
+        present.next = session::next(head.number);
+        if present.delivered < OVERLAP {
+            present.delivered = present.delivered.wrapping_add(1);
+            if present.delivered == OVERLAP {
+                *earlier = [Run::NONE; 3];
             }
-            let first = present.first.filter(|_| !is_other);
-            *present = Run { first, ..Run::NONE };
         }
-        let delivered = present.delivered.saturating_add(1).min(OVERLAP);
-        if delivered == OVERLAP {
-            *earlier = [Run::NONE; 3];
+        if head.is_first() {
+            present.first = Some(head.checksum);
         }
-        let first = if frame.is_first() { Some(checksum) } else { present.first };
-        *present = Run { next, delivered, first };
         self.strays = 0;
 
         let lost_frames = if let Standing::After(lost) = standing { lost } else { 0 };
         self.lost_frames = self.lost_frames.saturating_add(lost_frames);
         let gap = (lost_frames > 0).then_some(Gap { lost_frames });
+        let frame = FrameView::with_head(head, self.buffer.get(self.start..self.end)?);
         Some(Received { gap, is_start, is_unread: false, frame })
+    }
+
+    /// Begins another session, or the present one anew.
+    #[cold]
+    #[inline(never)]
+    fn start_session(&mut self, head: &Head) {
+        let [present, earlier @ ..] = &mut self.sessions;
+        // Of a session that is used again, the frames before are not those of another one.
+        let is_other =
+            present.ahead(head).is_none_or(|ahead| !(-LATE..LONGEST_GAP).contains(&ahead));
+        if is_other {
+            let [second, third, _] = *earlier;
+            *earlier = [*present, second, third];
+        }
+        let first = present.first.filter(|_| !is_other);
+        *present = Run { first, ..Run::NONE };
     }
 
     /// Number of frames that arrived whole.
@@ -267,28 +292,33 @@ impl<const N: usize> Reader<N> {
         self.is_interrupted
     }
 
+    /// The version of the link that bytes since the last frame seem to be of, if that is another than this one: they began
+    /// as its frames do. Both ends need the same version.
+    pub const fn other_version(&self) -> Option<u8> {
+        self.other_version
+    }
+
     /// Finds the next frame to deliver, which then begins at `start`, and returns its head and standing.
-    fn find(&mut self, input: &mut &[u8], is_silent: bool) -> Option<(Head, Standing)> {
+    #[inline]
+    fn find(&mut self, input: &mut &[u8], is_silent: bool) -> Option<Found> {
+        if self.start == self.end {
+            self.take_in(input);
+        }
         loop {
             let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
-            match Head::read(bytes, self.known.as_ref()) {
+            let error = match Head::read(bytes, self.known.as_ref()) {
                 Ok(head) => {
-                    let frame = FrameView::with_head(head, bytes);
-                    let counter = match self.standing(&frame, head.checksum) {
-                        Standing::Repeated => &mut self.repeated,
-                        Standing::Late | Standing::Stray => {
-                            // Where short frames cannot be read either, their sender is likely another start.
-                            let weight =
-                                if self.has_told && !head.is_short() { RETURN / 2 } else { 1 };
-                            self.strays = self.strays.saturating_add(weight);
-                            &mut self.late
-                        }
-                        standing => return Some((head, standing)),
-                    };
-                    *counter = counter.saturating_add(1);
-                    self.start = self.start.wrapping_add(head.length());
+                    let standing = self.standing(&head);
+                    if !matches!(standing, Standing::Repeated | Standing::Late | Standing::Stray) {
+                        return Some(Found { head, standing });
+                    }
+                    self.pass_over(&head, standing);
+                    continue;
                 }
-                Err(LinkError::Truncated { needed, .. })
+                Err(error) => error,
+            };
+            match error {
+                LinkError::Truncated { needed, .. }
                     if needed <= N && (!is_silent || bytes.is_empty()) =>
                 {
                     if input.is_empty() {
@@ -296,35 +326,67 @@ impl<const N: usize> Reader<N> {
                     }
                     self.take_in(input);
                 }
-                Err(error) => {
-                    if matches!(error, LinkError::Checksum { .. }) {
-                        self.bad_checksums = self.bad_checksums.saturating_add(1);
-                    }
-                    self.is_interrupted = true;
-                    let is_short = bytes.first().is_some_and(|&first| short::begins_with(first));
-                    let is_known = self.known.is_some();
-                    let begins = |&byte: &u8| byte == MAGIC || is_known && short::begins_with(byte);
-                    let next = bytes.iter().skip(1).position(begins);
-                    let skipped = next.map_or(bytes.len(), |next| next.wrapping_add(1));
-                    self.start = self.start.wrapping_add(skipped);
-                    self.skipped = self.skipped.saturating_add(skipped as u32);
-                    if is_short && !self.has_told {
-                        self.has_told = true;
-                        let nothing = Known::nothing(Coding::for_channels(1, 1));
-                        let known = self.known.as_ref().unwrap_or(&nothing);
-                        return Some((Head::unread(known), Standing::Unread));
+                error => {
+                    if let Some(head) = self.skip(error) {
+                        return Some(Found { head, standing: Standing::Unread });
                     }
                 }
             }
         }
     }
 
-    fn standing(&self, frame: &FrameView<'_>, checksum: u32) -> Standing {
+    /// Passes over a frame that is not delivered.
+    #[cold]
+    #[inline(never)]
+    fn pass_over(&mut self, head: &Head, standing: Standing) {
+        let counter = if standing == Standing::Repeated {
+            &mut self.repeated
+        } else {
+            // Where short frames cannot be read either, their sender is likely another start.
+            let weight = if self.has_told && !head.is_short() { RETURN / 2 } else { 1 };
+            self.strays = self.strays.saturating_add(weight);
+            &mut self.late
+        };
+        *counter = counter.saturating_add(1);
+        self.start = self.start.wrapping_add(head.length());
+    }
+
+    /// Skips bytes that begin no frame, up to the next that may. Returns what stands for them, if it was not told yet.
+    #[cold]
+    #[inline(never)]
+    fn skip(&mut self, error: LinkError) -> Option<Head> {
+        match error {
+            LinkError::Checksum { .. } => {
+                self.bad_checksums = self.bad_checksums.saturating_add(1);
+            }
+            LinkError::Version { found } => self.other_version = Some(found),
+            _ => {}
+        }
+        self.is_interrupted = true;
+        let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
+        let is_short = bytes.first().is_some_and(|&first| short::begins_with(first));
+        let is_known = self.known.is_some();
+        let begins = |&byte: &u8| byte == MAGIC || is_known && short::begins_with(byte);
+        let next = bytes.iter().skip(1).position(begins);
+        let skipped = next.map_or(bytes.len(), |next| next.wrapping_add(1));
+        self.start = self.start.wrapping_add(skipped);
+        self.skipped = self.skipped.saturating_add(skipped as u32);
+        if !is_short || self.has_told {
+            return None;
+        }
+        self.has_told = true;
+        let nothing = Known::nothing(Coding::for_channels(1, 1));
+        Some(Head::unread(self.known.as_ref().unwrap_or(&nothing)))
+    }
+
+    #[inline]
+    fn standing(&self, head: &Head) -> Standing {
         const BEFORE: i64 = -LATE;
+        let checksum = head.checksum;
         let [present, earlier @ ..] = &self.sessions;
-        let ahead = present.ahead(frame);
-        let since = frame.time().since(self.time);
-        if frame.is_first() {
+        let ahead = present.ahead(head);
+        let since = head.time.since(self.time);
+        if head.is_first() {
             // The first frame of the present session once more, or late; or of another start with the same session.
             let is_known = match present.first {
                 Some(first) => first == checksum,
@@ -353,8 +415,8 @@ impl<const N: usize> Reader<N> {
         }
         // A frame that was on its way when the sender restarted is late.
         let is_stray = |run: &Run| {
-            let is_near = run.ahead(frame).is_some_and(|ahead| ahead.abs() < i64::from(OVERLAP));
-            is_near && (!frame.is_first() || run.first.is_none_or(|first| first == checksum))
+            let is_near = run.ahead(head).is_some_and(|ahead| ahead.abs() < i64::from(OVERLAP));
+            is_near && (!head.is_first() || run.first.is_none_or(|first| first == checksum))
         };
         if self.strays < RETURN - 1 && earlier.iter().any(is_stray) {
             Standing::Stray

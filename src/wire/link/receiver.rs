@@ -7,7 +7,7 @@ use super::pace::{CLOCK_TOLERANCE, Elapsed, Pace, slots_fit};
 use super::steps::Steps;
 use super::time::Time;
 use super::trust::Trust;
-use super::{Joint, Part, Received, Withheld};
+use super::{FrameView, Joint, Part, Received, Withheld};
 use crate::event::{
     Addresses, CodeOf, DecoderStateOf, Event, Keyframe, SampleOf, Schemes, States, Tick, addressed,
     bank_fingerprint,
@@ -261,17 +261,8 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         let unit = if self.has_slots() { self.addresses.slot_ticks.max(1) } else { period };
         self.sample.pace.set(period, unit);
         let step_mask = frame.step_mask();
-        // A bank's keyframes come by rising address: one that does not rise is another bank's, or the same once more.
-        let mut highest = None;
-        for (keyframe, number) in frame.numbered_keyframes() {
-            let is_again = highest.is_some_and(|highest| keyframe.address <= highest);
-            if self.keyframe(frame.time(), keyframe, is_again, &mut on_value) {
-                highest = highest.max(Some(keyframe.address));
-                self.number(keyframe.address, step_mask, number);
-            }
-        }
-        for address in frame.heartbeats() {
-            self.heartbeat(frame.time(), address, &mut on_value);
+        if frame.has_entries() {
+            self.entries(frame, step_mask, &mut on_value);
         }
         let mut events = frame.events();
         while let Some(next) = events.next_numbered() {
@@ -283,6 +274,28 @@ impl<T: Schemes<N>, const N: usize, const EVENTS: usize> Receiver<T, N, EVENTS> 
         if !events.is_complete() {
             self.misfits = self.misfits.saturating_add(1);
             self.mark_stale();
+        }
+    }
+
+    /// Takes the keyframes or heartbeats of a frame.
+    #[inline(never)]
+    fn entries(
+        &mut self,
+        frame: &FrameView<'_>,
+        step_mask: u8,
+        on_value: &mut impl FnMut(u16, Tick, SampleOf<T, N>),
+    ) {
+        // A bank's keyframes come by rising address: one that does not rise is another bank's, or the same once more.
+        let mut highest = None;
+        for (keyframe, number) in frame.numbered_keyframes() {
+            let is_again = highest.is_some_and(|highest| keyframe.address <= highest);
+            if self.keyframe(frame.time(), keyframe, is_again, on_value) {
+                highest = highest.max(Some(keyframe.address));
+                self.number(keyframe.address, step_mask, number);
+            }
+        }
+        for address in frame.heartbeats() {
+            self.heartbeat(frame.time(), address, on_value);
         }
     }
 

@@ -2,7 +2,8 @@
 
 use core::ops::RangeInclusive;
 
-use super::{Coding, FrameWriter, Framer, LinkError, Part, Session, join};
+use super::writer::Draft;
+use super::{Coding, Framer, LinkError, Part, Session, join};
 use crate::error::unwrap;
 use crate::event::{Bank, Item, Schemes, Source, Taken, Tick};
 use crate::wire::Batch;
@@ -200,51 +201,62 @@ impl Transmitter {
         self.write_frame(&mut items, buffer)
     }
 
+    #[inline]
     fn write_frame<'a>(
         &mut self,
         items: &mut impl Source,
         buffer: &'a mut [u8],
     ) -> Result<Option<&'a [u8]>, LinkError> {
-        let mut items = Banks {
-            items,
-            first_address: self.first_address,
-            span: self.span,
-            foreign: &mut self.foreign,
+        let first = match self.held.take() {
+            Some(held) => held,
+            None => match self.take(items) {
+                Some(first) => first,
+                None => return Ok(None),
+            },
         };
-        let Some(first) = self.held.take().or_else(|| items.take()) else { return Ok(None) };
-        self.held = Some(first);
         if self.gathering.delays(first) {
+            self.held = Some(first);
             return Ok(None);
         }
+        self.write_items(first, items, buffer)
+    }
+
+    /// Writes a frame that begins with this item.
+    fn write_items<'a>(
+        &mut self,
+        first: Taken,
+        items: &mut impl Source,
+        buffer: &'a mut [u8],
+    ) -> Result<Option<&'a [u8]>, LinkError> {
         if first.is_after_break() {
             self.framer.mark_loss();
         }
+        if !self.framer.has_room(buffer) {
+            self.held = Some(first);
+            return Err(LinkError::Full);
+        }
         let has_keyframes = matches!(first.item, Item::Keyframe(_) | Item::Heartbeat { .. });
-        let mut frame = self.framer.begin(first.item.tick(), has_keyframes, buffer)?;
-        append(&mut frame, first.item)?;
-        self.held = loop {
-            match items.take() {
-                Some(next) if !next.is_after_break() && append(&mut frame, next.item).is_ok() => {}
-                held => break held,
+        let mut draft = Draft::new(&self.framer, first.item.tick(), buffer);
+        self.framer.open(has_keyframes, &mut draft);
+        if let Err(error) = append(&mut draft, first.item) {
+            self.held = Some(first);
+            return Err(error);
+        }
+        while let Some(taken) = self.take(items) {
+            if taken.is_after_break() || append(&mut draft, taken.item).is_err() {
+                self.held = Some(taken);
+                break;
             }
-        };
-        Ok(Some(frame.finish()))
+        }
+        Ok(Some(self.framer.close(&mut draft)))
     }
-}
 
-/// The items of a transmitter's banks.
-struct Banks<'a, T> {
-    items: &'a mut T,
-    first_address: u16,
-    span: u16,
-    foreign: &'a mut u32,
-}
-
-impl<T: Source> Source for Banks<'_, T> {
-    #[inline]
-    fn take(&mut self) -> Option<Taken> {
+    /// Takes the next item of its banks; a break for one of others before which items were lost, as those may be its banks'.
+    #[allow(clippy::inline_always)] // the item would go through memory
+    #[inline(always)]
+    fn take(&mut self, items: &mut impl Source) -> Option<Taken> {
         loop {
-            let taken = self.items.take()?;
+            let taken = items.take()?;
             let address = match taken.item {
                 Item::Event(event) => event.address,
                 Item::Keyframe(keyframe) => keyframe.address,
@@ -254,8 +266,7 @@ impl<T: Source> Source for Banks<'_, T> {
             if address.wrapping_sub(self.first_address) <= self.span {
                 return Some(taken);
             }
-            *self.foreign = self.foreign.saturating_add(1);
-            // Those that were lost before it may be the banks' own.
+            self.foreign = self.foreign.saturating_add(1);
             if taken.lost > 0 {
                 return Some(Taken { item: Item::Break(taken.item.tick()), ..taken });
             }
@@ -271,18 +282,19 @@ struct Gathering {
 }
 
 impl Gathering {
-    /// Whether this item, the next one, waits for others.
+    /// Whether this item, the next one, waits for others. Not if it is far ahead of the time that is known, as after a clock
+    /// that stepped back, or where nobody tells the time.
     #[inline]
     fn delays(self, first: Taken) -> bool {
         let Item::Event(event) = first.item else { return false };
-        let waited = i64::from(self.now.since(event.tick));
-        self.micros > 0 && first.lost == 0 && waited < i64::from(self.micros)
+        let waited = self.now.since(event.tick).unsigned_abs();
+        first.lost == 0 && waited < self.micros
     }
 }
 
 /// Appends an item. A break needs no bytes, as the frame's flag stands for it.
 #[inline]
-fn append(frame: &mut FrameWriter<'_, '_>, item: Item) -> Result<(), LinkError> {
+fn append(frame: &mut Draft<'_>, item: Item) -> Result<(), LinkError> {
     match item {
         Item::Event(event) => frame.put(event).ok_or(LinkError::Full),
         Item::Keyframe(keyframe) => frame.keyframe(keyframe),

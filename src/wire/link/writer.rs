@@ -9,7 +9,7 @@ use super::frame::{
     CHECKSUM, FINGERPRINT, FLAGS_AT, HEADER, HEARTBEATS, LENGTH_AT, MAGIC, MAX_LENGTH, MIN_FRAME,
     VERSION, flag, keyframe_size, short,
 };
-use super::known::{Known, Point};
+use super::known::{Known, Next, Point};
 use super::steps::{MOST_BITS, Steps};
 use super::time::Time;
 use super::{LinkError, Session, session};
@@ -233,121 +233,84 @@ impl Framer {
         tick: Tick,
         buffer: &'a mut [u8],
     ) -> Result<FrameWriter<'f, 'a>, LinkError> {
-        self.begin(tick, false, buffer)
-    }
-
-    /// Starts a frame that begins with keyframes or heartbeats, or that does not.
-    #[allow(clippy::inline_always)] // a frame that is being written would be copied twice
-    #[inline(always)]
-    pub(super) fn begin<'f, 'a>(
-        &'f mut self,
-        tick: Tick,
-        has_keyframes: bool,
-        buffer: &'a mut [u8],
-    ) -> Result<FrameWriter<'f, 'a>, LinkError> {
-        let least = if self.fingerprint.is_some() { MIN_FRAME + FINGERPRINT } else { MIN_FRAME };
-        let Some(limit) = buffer.len().checked_sub(CHECKSUM) else { return Err(LinkError::Full) };
-        if buffer.len() < least {
+        if !self.has_room(buffer) {
             return Err(LinkError::Full);
         }
-        let mut bytes = Cursor::new(buffer);
-        let opening = self.open(tick, has_keyframes, limit, &mut bytes);
-        let Opening { point, lead, flags } = opening;
-        let (coding, steps) = (self.coding, self.steps);
-        Ok(FrameWriter {
-            framer: self,
-            bits: BitWriter::new(bytes),
-            flags,
-            is_short: lead.is_some(),
-            tick,
-            point,
-            lead,
-            run: None,
-            keyframes: 0,
-            events: 0,
-            place: Place::new(coding, tick),
-            steps,
-        })
+        let mut draft = Draft::new(self, tick, buffer);
+        self.open(false, &mut draft);
+        Ok(FrameWriter { framer: self, draft })
     }
 
-    /// Writes the header of a frame.
+    /// Whether any frame can begin in this buffer.
+    #[inline]
+    pub(super) fn has_room(&self, buffer: &[u8]) -> bool {
+        let fingerprint = if self.fingerprint.is_some() { FINGERPRINT } else { 0 };
+        buffer.len() >= MIN_FRAME + fingerprint
+    }
+
+    /// Begins a [new](Draft::new) frame, with keyframes or heartbeats first or without.
     #[inline(never)]
-    fn open(
-        &mut self,
-        tick: Tick,
-        has_keyframes: bool,
-        limit: usize,
-        bytes: &mut Cursor<'_>,
-    ) -> Opening {
+    pub(super) fn open(&mut self, has_keyframes: bool, draft: &mut Draft<'_>) {
+        let tick = draft.tick;
         if self.flags & flag::FIRST != 0 {
             self.time = Time::from_micros(tick.micros().into());
-            let point = Point { time: self.time, count: 0 };
-            return self.open_full(point, 0, limit, bytes);
+            self.known.point = Point { time: self.time, count: 0 };
         }
         self.go_to(tick);
-        let before = self.known.point;
         // A silence is no longer than a leap, and a longer one begins a grid of its own.
-        let since = i32::try_from(self.time.since(before.time)).unwrap_or(i32::MAX);
+        let since = i32::try_from(self.time.since(self.known.point.time)).unwrap_or(i32::MAX);
         let (steps, jitter) = nearest_step(since, self.coding.period);
-        let point = before.later(steps, self.coding);
-        let since_full = i64::from(tick.since(self.full_at));
+        draft.next = self.known.later(steps);
         let every = if has_keyframes { self.full_every / 2 } else { self.full_every };
         let is_due = self.full_ahead > 0
             || self.flags & flag::LOST != 0
             || every == 0
-            || since_full >= i64::from(every);
-        if !is_due && self.known.can_tell(steps) {
-            let time = ShortTime { count: point.count, jitter };
-            let mut lead = Word::default();
-            time.put(self.coding, &mut lead);
-            if lead.is_whole() {
-                // A byte is left for the length.
-                bytes.set_limit(limit.saturating_sub(1).min(short::HEADER + MAX_LENGTH));
-                let _ = bytes.put(&[0; short::HEADER]);
-                return Opening { point, lead: Some(lead), flags: 0 };
-            }
+            || i64::from(tick.since(self.full_at)) >= i64::from(every);
+        if is_due || !self.known.can_tell(steps) {
+            return self.open_full(jitter, draft);
         }
-        self.open_full(point, jitter, limit, bytes)
+        let mut lead = Word::default();
+        let time = ShortTime { count: draft.next.point.count, jitter };
+        time.put(self.known.grid_bits, self.coding.jitter_bits, &mut lead);
+        if !lead.is_whole() {
+            return self.open_full(jitter, draft);
+        }
+        draft.bits.begin(short::HEADER, short::HEADER + MAX_LENGTH, Draft::KEPT_SHORT);
+        if has_keyframes {
+            draft.lead = Some(lead);
+        } else {
+            draft.bits.put_lead(lead);
+        }
     }
 
+    /// Makes a frame a full one.
     #[cold]
     #[inline(never)]
-    fn open_full(
-        &self,
-        point: Point,
-        jitter: i32,
-        limit: usize,
-        bytes: &mut Cursor<'_>,
-    ) -> Opening {
+    fn open_full(&self, jitter: i32, draft: &mut Draft<'_>) {
         // A time far from its point begins the grid anew, as half of a long period may be.
-        let is_near = self.time.since(point.time) == i64::from(jitter);
+        let is_near = self.time.since(draft.next.point.time) == i64::from(jitter);
         let jitter = i16::try_from(jitter).ok().filter(|_| is_near);
-        let point = if jitter.is_some() { point } else { Point { time: self.time, ..point } };
+        if jitter.is_none() {
+            draft.next.point.time = self.time;
+        }
         let [n0, n1, n2, n3, n4, n5, _, _] = self.number.to_le_bytes();
         let [t0, t1, t2, t3, t4, t5, _, _] = self.time.micros().to_le_bytes();
         let [p0, p1, p2, _] = self.coding.period.get().to_le_bytes();
         let (code, step) = (self.coding.byte(), self.coding.step_bits);
-        let [c0, c1, _, _] = point.count.to_le_bytes();
+        let [c0, c1, _, _] = draft.next.point.count.to_le_bytes();
         let [j0, j1] = jitter.unwrap_or(0).to_le_bytes();
-        bytes.set_limit(limit.min(HEADER + MAX_LENGTH));
-        let _ = bytes.put(&[
+        draft.is_short = false;
+        draft.flags = self.flags;
+        draft.bits.begin(0, HEADER + MAX_LENGTH, CHECKSUM);
+        draft.bits.put_bytes(&[
             MAGIC, 0, n0, n1, n2, n3, n4, n5, t0, t1, t2, t3, t4, t5, p0, p1, p2, code, step, c0,
             c1, j0, j1, 0,
         ]);
-        let mut flags = self.flags;
         if let Some(fingerprint) = self.fingerprint {
-            flags |= flag::FINGERPRINT;
-            let _ = bytes.put(&fingerprint.bits().to_le_bytes());
+            draft.flags |= flag::FINGERPRINT;
+            draft.bits.put_bytes(&fingerprint.bits().to_le_bytes());
         }
-        Opening { point, lead: None, flags }
     }
-}
-
-/// The beginning of a frame: its point on the grid, the bits of its time in a short one, and its flags.
-struct Opening {
-    point: Point,
-    lead: Option<Word>,
-    flags: u8,
 }
 
 /// The bytes before the first keyframe or heartbeat: how many there are, and their sample type.
@@ -364,19 +327,7 @@ struct Run(Option<SampleKind>);
 #[derive(Debug)]
 pub struct FrameWriter<'f, 'a> {
     framer: &'f mut Framer,
-    bits: BitWriter<'a>,
-    flags: u8,
-    is_short: bool,
-    tick: Tick,
-    point: Point,
-    /// The bits of a short frame's time, until they are written.
-    lead: Option<Word>,
-    /// The kind of the frame's keyframes or heartbeats; `None` before the first.
-    run: Option<Run>,
-    keyframes: u8,
-    events: u32,
-    place: Place,
-    steps: Steps,
+    draft: Draft<'a>,
 }
 
 impl<'a> FrameWriter<'_, 'a> {
@@ -386,8 +337,7 @@ impl<'a> FrameWriter<'_, 'a> {
     /// Returns an error if the frame is full, has another tick, or already has events or a keyframe of another sample
     /// type. It is unchanged.
     pub fn keyframe(&mut self, keyframe: Keyframe) -> Result<(), LinkError> {
-        let Keyframe { tick, address, kind, bits } = keyframe;
-        self.entry(tick, address, Some(kind), bits)
+        self.draft.keyframe(keyframe)
     }
 
     /// Appends a [heartbeat](crate::Item::Heartbeat), at the frame's tick.
@@ -395,8 +345,75 @@ impl<'a> FrameWriter<'_, 'a> {
     /// # Errors
     /// Returns an error if the frame is full, has another tick, or already has events or keyframes. It is unchanged.
     pub fn heartbeat(&mut self, tick: Tick, address: u16) -> Result<(), LinkError> {
-        self.entry(tick, address, None, 0)
+        self.draft.heartbeat(tick, address)
     }
+
+    /// Appends an event.
+    ///
+    /// # Errors
+    /// Returns [`LinkError::Full`] if the event does not fit, or lies more than 2²⁹ µs (8.9 minutes) from the frame's
+    /// tick. The frame is unchanged.
+    pub fn event(&mut self, event: Event) -> Result<(), LinkError> {
+        self.draft.put(event).ok_or(LinkError::Full)
+    }
+
+    /// How many events it has.
+    pub fn events(&self) -> u32 {
+        self.draft.events
+    }
+
+    /// Whether it has neither keyframes nor events.
+    pub fn is_empty(&self) -> bool {
+        self.draft.events == 0 && self.draft.keyframes == 0
+    }
+
+    /// Closes the frame and returns its bytes, ready to send. The frame takes its number: if it is not sent, the reader
+    /// sees a gap.
+    pub fn finish(mut self) -> &'a [u8] {
+        self.framer.close(&mut self.draft)
+    }
+}
+
+/// What is written of a frame. Its [`Framer`] begins and closes it.
+#[derive(Debug)]
+pub(super) struct Draft<'a> {
+    bits: BitWriter<'a>,
+    flags: u8,
+    is_short: bool,
+    /// The kind of the frame's keyframes or heartbeats; `None` before the first.
+    run: Option<Run>,
+    keyframes: u8,
+    events: u32,
+    tick: Tick,
+    next: Next,
+    /// The bits of a short frame's time, if keyframes come before them.
+    lead: Option<Word>,
+    place: Place,
+    steps: Steps,
+}
+
+impl<'a> Draft<'a> {
+    /// A frame of this framer at this tick, which [opens](Framer::open) it next. It is filled where it stays, as a copy
+    /// would cost as much as an event.
+    #[inline]
+    pub(super) fn new(framer: &Framer, tick: Tick, buffer: &'a mut [u8]) -> Self {
+        Self {
+            bits: BitWriter::new(Cursor::new(buffer)),
+            flags: 0,
+            is_short: true,
+            run: None,
+            keyframes: 0,
+            events: 0,
+            tick,
+            next: Next::NONE,
+            lead: None,
+            place: Place::new(framer.coding, tick),
+            steps: framer.steps,
+        }
+    }
+
+    /// The bytes that are kept free behind a short frame: the checksum, and one for its length, which moves the others.
+    const KEPT_SHORT: usize = CHECKSUM + 1;
 
     /// Where the keyframes begin.
     const fn run_at(&self) -> usize {
@@ -409,6 +426,18 @@ impl<'a> FrameWriter<'_, 'a> {
         }
     }
 
+    /// Appends a keyframe.
+    pub(super) fn keyframe(&mut self, keyframe: Keyframe) -> Result<(), LinkError> {
+        let Keyframe { tick, address, kind, bits } = keyframe;
+        self.entry(tick, address, Some(kind), bits)
+    }
+
+    /// Appends a heartbeat.
+    pub(super) fn heartbeat(&mut self, tick: Tick, address: u16) -> Result<(), LinkError> {
+        self.entry(tick, address, None, 0)
+    }
+
+    #[inline(never)]
     fn entry(
         &mut self,
         tick: Tick,
@@ -420,48 +449,42 @@ impl<'a> FrameWriter<'_, 'a> {
         if self.events > 0 || tick != self.tick || self.run.is_some_and(|first| first != entry) {
             return Err(LinkError::KeyframeOrder);
         }
-        let coding = self.framer.coding;
+        let coding = self.place.coding();
         let run = if self.run.is_none() { RUN_HEADER } else { 0 };
-        let lead = if self.lead.is_some() { LEAD } else { 0 };
-        let has_begun = self.is_short && self.lead.is_none();
+        let lead = if self.is_short { LEAD } else { 0 };
         let size = keyframe_size(kind, coding);
-        if self.keyframes == u8::MAX || has_begun || run + size + lead > self.bits.room() {
+        if self.keyframes == u8::MAX || run + size + lead > self.bits.room() {
             return Err(LinkError::Full);
         }
         if self.run.is_none() {
+            if self.is_short && self.lead.is_none() {
+                // The time was written, as no keyframes were to be expected.
+                self.lead = Some(self.bits.take_lead());
+            }
             self.run = Some(entry);
             self.flags |= flag::KEYFRAMES;
             self.bits.put_bytes(&[0, kind.map_or(HEARTBEATS, SampleKind::to_byte)]);
         }
-        self.bits.put_bytes(&address.to_le_bytes());
-        if let Some(kind) = kind {
-            self.bits.put_bytes(bits.to_le_bytes().get(..kind.size()).unwrap_or_default());
-            if coding.step_bits > 0 {
-                self.bits.put_bytes(&[self.steps.number(address, coding.step_mask())]);
-            }
-        }
+        let [a0, a1] = address.to_le_bytes();
+        let [b0, b1, b2, b3] = bits.to_le_bytes();
+        let step = self.steps.number(address, coding.step_mask());
+        let is_wide = kind.is_some_and(|kind| kind.size() > 2);
+        let entry =
+            if is_wide { [a0, a1, b0, b1, b2, b3, step] } else { [a0, a1, b0, b1, step, 0, 0] };
+        self.bits.put_bytes(entry.get(..size).unwrap_or_default());
         self.keyframes = self.keyframes.saturating_add(1);
         Ok(())
-    }
-
-    /// Appends an event.
-    ///
-    /// # Errors
-    /// Returns [`LinkError::Full`] if the event does not fit, or lies more than 2²⁹ µs (8.9 minutes) from the frame's
-    /// tick. The frame is unchanged.
-    pub fn event(&mut self, event: Event) -> Result<(), LinkError> {
-        self.put(event).ok_or(LinkError::Full)
     }
 
     /// Appends an event; `None` if it does not fit.
     #[inline(never)]
     pub(super) fn put(&mut self, event: Event) -> Option<()> {
         self.put_lead();
-        let steps = if self.place.has_numbers() { self.steps.after(event) } else { self.steps };
         let mut word = Word::default();
         self.place.put(event, self.tick, &mut word)?;
+        let steps = if self.place.has_numbers() { self.steps.after(event) } else { self.steps };
         if let Some(number) = self.number(event, steps) {
-            word.put(number.into(), self.framer.coding.step_bits.into());
+            word.put(number.into(), self.place.coding().step_bits.into());
         }
         if self.bits.put_word(word).is_none() {
             self.put_long(event, steps)?;
@@ -476,7 +499,7 @@ impl<'a> FrameWriter<'_, 'a> {
     #[inline]
     fn number(&self, event: Event, steps: Steps) -> Option<u8> {
         let has_number = self.place.has_number(event.address);
-        has_number.then(|| steps.number(event.address, self.framer.coding.step_mask()))
+        has_number.then(|| steps.number(event.address, self.place.coding().step_mask()))
     }
 
     /// Appends an event that is too long for a word; `None` if it does not fit.
@@ -486,7 +509,7 @@ impl<'a> FrameWriter<'_, 'a> {
         let mark = self.bits.mark();
         self.place.put(event, self.tick, &mut self.bits)?;
         if let Some(number) = self.number(event, steps) {
-            self.bits.put(number.into(), self.framer.coding.step_bits.into());
+            self.bits.put(number.into(), self.place.coding().step_bits.into());
         }
         if !self.bits.is_within_limit() {
             self.bits.back_to(mark);
@@ -495,71 +518,57 @@ impl<'a> FrameWriter<'_, 'a> {
         Some(())
     }
 
-    /// Appends the time of a short frame, behind its keyframes. There is room for it.
+    /// Appends the time of a short frame that begins with keyframes. There is room for it.
     #[inline]
     fn put_lead(&mut self) {
         if let Some(lead) = self.lead.take() {
-            let _ = self.bits.put_word(lead);
+            self.bits.put_lead(lead);
         }
     }
+}
 
-    /// How many events it has.
-    pub fn events(&self) -> u32 {
-        self.events
-    }
-
-    /// Whether it has neither keyframes nor events.
-    pub fn is_empty(&self) -> bool {
-        self.events == 0 && self.keyframes == 0
-    }
-
-    /// Closes the frame and returns its bytes, ready to send. The frame takes its number: if it is not sent, the reader
-    /// sees a gap.
-    #[allow(clippy::inline_always)] // the frame would be copied
-    #[inline(always)]
-    pub fn finish(mut self) -> &'a [u8] {
-        self.close();
-        self.bits.into_slice()
-    }
-
-    /// Writes what is known at the end alone.
+impl Framer {
+    /// Writes what is known at the end alone, and returns the bytes. The frame takes its number.
     #[inline(never)]
-    fn close(&mut self) {
-        self.put_lead();
-        let run_at = self.run_at();
-        let Self { framer, is_short, .. } = self;
-        let bytes = self.bits.finish();
-        if self.keyframes > 0 {
-            bytes.replace(run_at, self.keyframes);
+    pub(super) fn close<'a>(&mut self, draft: &mut Draft<'a>) -> &'a [u8] {
+        draft.put_lead();
+        let run_at = draft.run_at();
+        let Draft { bits, keyframes, next, .. } = draft;
+        let bytes = bits.finish();
+        if *keyframes > 0 {
+            bytes.replace(run_at, *keyframes);
         }
-        let register = if *is_short {
-            let length = bytes.written().saturating_sub(short::HEADER) as u8;
-            let first =
-                if self.keyframes > 0 { short::MAGIC | short::KEYFRAMES } else { short::MAGIC };
-            let [low, ..] = framer.number.to_le_bytes();
-            bytes.replace(1, low);
-            if length > short::LENGTH {
-                bytes.replace(0, first | short::LENGTH);
-                bytes.insert(1, length);
-            } else {
-                bytes.replace(0, first | length.wrapping_sub(1) & short::LENGTH);
-            }
-            framer.known.go_to(framer.number, self.point)
+        let register = if draft.is_short {
+            close_short(self.number, *keyframes > 0, bytes);
+            self.known.go_to(self.number, *next)
         } else {
-            bytes.replace(FLAGS_AT, VERSION << 4 | self.flags);
+            bytes.replace(FLAGS_AT, VERSION << 4 | draft.flags);
             bytes.replace(LENGTH_AT, bytes.written().saturating_sub(HEADER) as u8);
-            framer.full_at = self.tick;
-            framer.full_ahead = framer.full_ahead.saturating_sub(1);
-            framer.known = Known::new(framer.coding, framer.fingerprint, framer.number, self.point);
+            self.full_at = draft.tick;
+            self.full_ahead = self.full_ahead.saturating_sub(1);
+            self.known = Known::new(self.coding, self.fingerprint, self.number, next.point);
             Register::START
         };
         let checksum = register.after(bytes.as_slice()).checksum();
-        bytes.set_limit(usize::MAX);
-        // There is room, which the limit kept free.
-        let _ = bytes.put(&checksum.to_le_bytes());
-        framer.number = session::next(framer.number);
-        framer.time = framer.time.nearest(self.place.tick());
-        framer.flags = 0;
-        framer.steps = self.steps;
+        bytes.put_some(checksum.to_le_bytes(), CHECKSUM);
+        self.number = session::next(self.number);
+        self.time = self.time.nearest(draft.place.tick());
+        self.flags = 0;
+        self.steps = draft.steps;
+        bytes.take()
+    }
+}
+
+/// Writes what comes before the payload of a short frame.
+#[inline]
+fn close_short(number: u64, has_keyframes: bool, bytes: &mut Cursor<'_>) {
+    let length = bytes.written().wrapping_sub(short::HEADER) as u8;
+    let first = if has_keyframes { short::MAGIC | short::KEYFRAMES } else { short::MAGIC };
+    bytes.replace(1, number as u8);
+    if length > short::LENGTH {
+        bytes.replace(0, first | short::LENGTH);
+        bytes.insert(1, length);
+    } else {
+        bytes.replace(0, first | length.wrapping_sub(1) & short::LENGTH);
     }
 }

@@ -22,6 +22,7 @@ pub fn fmt() -> Result<()> {
     }
     // Each becomes a project of its own, where its manifest finds the crates.
     schemes.arg(paths::examples().join("templates/build.rs"));
+    schemes.arg(paths::examples().join("templates/nucleo/src/main.rs"));
     for Template { hal, .. } in &TEMPLATES {
         schemes.arg(paths::examples().join(format!("templates/{hal}/src/main.rs")));
     }
@@ -43,7 +44,7 @@ pub fn test() -> Result<()> {
 pub fn readme() -> Result<()> {
     let said = output(&mut tests("--doc -- pages")?)?;
     print!("{said}");
-    for page in ["Readme", "Usage", "Frames"] {
+    for page in ["Readme", "Usage", "Frames", "Async", "TinyOdin"] {
         ensure!(
             said.contains(&format!(" - pages::{page} (line ")),
             "no doctest of `pages::{page}`: is the page included in a lib.rs?"

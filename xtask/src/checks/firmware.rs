@@ -20,7 +20,7 @@ pub fn every_day() -> Result<()> {
     compare_on(&[], Board::every_day(), "=")
 }
 
-/// Runs the named programs, or all, on these boards. On docs/bits.md, boards that do not run must have the mark `absent`.
+/// Runs the named programs, or all, on these boards. In docs/bits.csv, boards that do not run must have the mark `absent`.
 fn compare_on(
     names: &[String],
     boards: impl Iterator<Item = &'static Board>,
@@ -53,7 +53,7 @@ fn compare_on(
     Ok(())
 }
 
-/// Writes spike counts, and which bits agree, into docs/bits.md.
+/// Writes spike counts, and which bits agree, into docs/bits.csv.
 pub fn write() -> Result<()> {
     needs::ensure_met()?;
     let boards: Vec<_> = Board::all().collect();

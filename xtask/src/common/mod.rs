@@ -1,6 +1,7 @@
-//! Shared by all modules: running programs, paths, progress, processor time, the error of a wrong command line.
+//! Shared by all modules: running programs, paths, links, progress, processor time, the error of a wrong command line.
 
 pub mod cpu;
+pub mod links;
 pub mod paths;
 pub mod progress;
 pub mod shell;

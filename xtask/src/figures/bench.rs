@@ -99,17 +99,16 @@ pub fn bench(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Writes the tables into docs/costs.md, and the short one into README.md.
+/// Writes the tables into docs/costs.md and the files beside it, and the short ones into README.md.
 pub fn write() -> Result<()> {
     needs::ensure_met()?;
     table::write(&measure(&[], &CORES)?)
 }
 
-/// Writes the tables of stacks into docs/costs.md.
+/// Writes the table of stacks into docs/costs.md, and all of them beside it.
 pub fn write_stack() -> Result<()> {
     needs::ensure_met()?;
-    let measured = measure(&CODECS, &CORES)?;
-    CORES.iter().try_for_each(|core| table::write_stack(core, &measured))
+    table::write_stack(&measure(&CODECS, &CORES)?)
 }
 
 /// Maximum stack of a codec, in bytes.

@@ -1,43 +1,59 @@
-//! Writes docs/bits.md: spike counts, and a mark for each board whose bits agree.
+//! Writes docs/bits.csv: spike counts, and a mark for each board whose bits agree.
 
-use crate::figures::{markdown, names::full_name};
-use anyhow::Result;
+use crate::{common::paths, figures::names::full_name};
+use anyhow::{Context, Result, ensure};
+use std::fs;
 
-const PAGE: &str = "docs/bits.md";
-const MARKER: &str = "bits";
+const FIGURES: &str = "docs/bits.csv";
+/// The mark of a board whose bits are the host's.
+const AGREES: &str = "=";
 
 /// Formats a row for each scheme and a column for each sample type, from lines such as `sf f32 spikes=2074 …` with
-/// their marks. A cell is the host's spike count, followed by a mark for each board.
+/// their marks. A cell is the host's spike count, followed by one mark if all boards agree, or else by one for each.
 pub fn table(flown: &[(String, String)]) -> String {
     let schemes = distinct(flown, 0);
     let samples = distinct(flown, 1);
-    let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
 
     let heads = ["scheme"].iter().chain(&samples).map(ToString::to_string);
-    let rule = vec!["---".to_owned(); 1 + samples.len()];
     let body = schemes.iter().map(|scheme| {
         let cells = samples.iter().map(|sample| {
             let start = format!("{scheme} {sample} spikes=");
             let cell = flown.iter().find_map(|(line, marks)| {
                 let spikes = line.strip_prefix(&start)?.split(' ').next()?;
-                Some(format!("{spikes} {marks}"))
+                let do_all_agree = marks.split(' ').all(|mark| mark == AGREES);
+                Some(format!("{spikes} {}", if do_all_agree { AGREES } else { marks }))
             });
             cell.unwrap_or_default()
         });
         row([full_name(scheme).to_owned()].into_iter().chain(cells).collect())
     });
-    [row(heads.collect()), row(rule)].into_iter().chain(body).collect()
+    [row(heads.collect())].into_iter().chain(body).collect()
 }
 
-/// Writes the table into docs/bits.md.
+fn row(cells: Vec<String>) -> String {
+    cells.into_iter().map(quoted).collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// Quotes a cell with a comma.
+fn quoted(cell: String) -> String {
+    if cell.contains(',') { format!("\"{cell}\"") } else { cell }
+}
+
+/// Writes the table into its file.
 pub fn write(table: &str) -> Result<()> {
-    markdown::write(PAGE, MARKER, &format!("\n{table}\n"))
+    fs::write(paths::root().join(FIGURES), table).context(FIGURES)?;
+    println!("{FIGURES} is written.");
+    Ok(())
 }
 
-/// Fails if docs/bits.md has another table.
+/// Fails if the file has another table.
 pub fn ensure_written(table: &str) -> Result<()> {
-    let command = "cargo xtask write bits";
-    markdown::ensure_written(PAGE, MARKER, &format!("\n{table}\n"), command)
+    let written = fs::read_to_string(paths::root().join(FIGURES)).context(FIGURES)?;
+    ensure!(
+        written == table,
+        "{FIGURES} has other figures; `cargo xtask write bits` writes these:\n{table}"
+    );
+    Ok(())
 }
 
 /// Returns the words at one position of the lines, each once.
@@ -65,10 +81,9 @@ mod tests {
         ];
         let flown = lines.map(|(line, marks)| (line.to_owned(), marks.to_owned()));
         let expected = "\
-            | scheme | f32 | i16 |\n\
-            | --- | --- | --- |\n\
-            | step forward (SF) | 7 = = | 9 = = |\n\
-            | Hough spiker (HSA) | 8 = DIFF | 10 = = |\n";
+            scheme,f32,i16\n\
+            step forward (SF),7 =,9 =\n\
+            Hough spiker (HSA),8 = DIFF,10 =\n";
         assert_eq!(table(&flown), expected);
     }
 }

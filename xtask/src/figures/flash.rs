@@ -38,7 +38,7 @@ pub fn verify() -> Result<()> {
 /// Formats a row for each codec.
 fn table() -> Result<String> {
     let mut table =
-        "\n| codec, both ways | M4F, by samples | by slices | M0, by samples | by slices |\n\
+        "\n| scheme, both ways | M4F, by samples | by slices | M0, by samples | by slices |\n\
          |---|---:|---:|---:|---:|\n"
             .to_owned();
     let linked = |board: &Board, codec: &str| {

@@ -1,5 +1,7 @@
-//! What others use of this repository: the C library, the Python package, the page, firmware for a board.
+//! What others use of this repository: the C library, the Python package, the page, the book, firmware
+//! for a board.
 
+pub mod book;
 pub mod c_library;
 pub mod new_firmware;
 pub mod new_scheme;

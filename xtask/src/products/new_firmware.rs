@@ -7,14 +7,14 @@ use crate::common::{paths, usage};
 use crate::products::parts::{BOARDS, Part};
 use crate::products::templates::{TEMPLATES, Template};
 use anyhow::{Context, Result, ensure};
-use spikewire_flight::{Flight, escaped};
+use spikewire_flight::{Flight, UnitSize, escaped};
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 use toml::{Table, Value};
 
-/// The templates' own reading of names and units.
+/// The templates' own reading of names.
 #[path = "../../../examples/flight/src/names.rs"]
 #[allow(dead_code, reason = "a template needs sizes of units, too")]
 mod names;
@@ -152,8 +152,10 @@ fn check_flight(path: &Path) -> Result<()> {
         let axis = names::axis(&channel.name).with_context(|| {
             format!("{file}:{line}: `{name}` has no axis in its name, such as gyro_x or accel_z")
         })?;
-        let is_known = names::unit(&channel.unit, axis < 3).is_some();
-        let units = if axis < 3 { "rad/s or deg/s" } else { "m/s² or g" };
+        let size = UnitSize::of(&channel.unit);
+        let of_quantity = if axis < 3 { UnitSize::rate } else { UnitSize::acceleration };
+        let is_known = size.and_then(of_quantity).is_some();
+        let units = if axis < 3 { "one such as rad/s or deg/s" } else { "one such as m/s² or g" };
         ensure!(is_known, "{file}:{line}: the unit of `{name}` must be {units}");
     }
     Ok(())
@@ -362,9 +364,9 @@ mod tests {
             assert!(!project.exists());
         };
         refused("name = \"roll\"\nunit = \"rad/s\"", "flight.toml:5: `roll` has no axis");
-        refused("name = \"gyro_x\"\nunit = \"V\"", "must be rad/s or deg/s");
+        refused("name = \"gyro_x\"\nunit = \"V\"", "must be one such as rad/s or deg/s");
         refused("name = \"gyro_x\"", "line 5: channel 0: unit is missing for \"gyro_x\"");
-        refused("name = \"acc_x\"\nunit = \"deg/s\"", "must be m/s² or g");
+        refused("name = \"acc_x\"\nunit = \"deg/s\"", "must be one such as m/s² or g");
     }
 
     #[test]

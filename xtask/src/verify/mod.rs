@@ -14,7 +14,7 @@ use crate::checks::{
 use crate::common::{cpu, usage};
 use crate::figures::{bench, chips, demo, faults, flash};
 use crate::mutants;
-use crate::products::{c_library, new_scheme, page, python_package};
+use crate::products::{book, c_library, new_scheme, page, python_package};
 use crate::release;
 use crate::setup::{self, needs};
 use anyhow::{Result, bail, ensure};
@@ -66,6 +66,9 @@ const STEPS: &[Step] = &[
     ),
     step!("peers", "event formats against other programs", peers::peers),
     step!("readme", "the code of README and docs runs", everyday::readme),
+    step!("book", "the pages as a web site: each has its place, and no link is broken", || {
+        book::build().map(drop)
+    }),
     step!("doc", "documentation without warnings", everyday::doc),
     step!("interface", "what each crate offers is what its interface.txt says", interface::verify),
     step!("package", "what is published has all that its pages show", package::package),
@@ -126,7 +129,7 @@ const LONG: &[Step] = &[
     ),
     step!(
         "nucleo",
-        "the whole program on the page of boards, compiled and linked with its HAL",
+        "the whole program that the page of boards names, compiled and linked with its HAL",
         nucleo::nucleo,
     ),
     step!("logging", "defmt out of an emulated Cortex-M4F, decoded on the host", logging::logging),

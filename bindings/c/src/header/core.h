@@ -189,7 +189,8 @@ typedef struct sw_reader_counts {
 typedef void (*sw_take_item)(void *context, const sw_item *item);
 
 sw_status sw_reader_init(sw_reader *reader);
-/* Hands each item of each frame that the bytes complete to `take`, in order; a break where frames are missing. */
+/* Hands each item of each frame that the bytes complete to `take`, in order; a break where frames are missing. Returns
+ * SW_OTHER_VERSION, above 0, while the bytes since the last frame look like those of another version of the link. */
 sw_status sw_reader_take(sw_reader *reader, const uint8_t *bytes, size_t length, sw_take_item take, void *context);
 sw_status sw_reader_counts_of(const sw_reader *reader, sw_reader_counts *counts);
 

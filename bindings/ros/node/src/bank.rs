@@ -149,7 +149,7 @@ impl Unbank {
                 (self.start(start)?, true)
             }
         };
-        if is_new && *sample > 0 && codecs.iter().any(Codec::starts_at_first) {
+        if is_new && *sample > 0 && self.flight.scheme.has_first_value() {
             let detail = format!(
                 "the first sample heard is number {sample}: values are off by what was missed"
             );

@@ -8,7 +8,7 @@ const PERIOD: u16 = 5_000;
 const COUNTS: Counts = Counts::of_ranges(2000.0, 16.0);
 static CODE: SendOnDelta<f32, 8> = SendOnDelta::new(0.05);
 const CHANNELS: Channels<2> =
-    Channels::new(COUNTS, ["accel_z", "gyro_x"], ["m/s²", "rad/s"], [1.0, 1.0]);
+    Channels::new(COUNTS, ["accel_z", "gyro_x"], [[0.0, 1.0], [1.0, 0.0]], [1.0, 1.0]);
 
 /// What has befallen the sensor.
 #[derive(Clone, Copy, PartialEq)]
@@ -165,6 +165,8 @@ fn a_second_of_the_flight_is_news() {
 
 #[test]
 fn channels_are_found_by_name_and_come_in_the_files_unit() {
+    const DEGREE: f64 = core::f64::consts::PI / 180.0;
+    const G: f64 = 9.806_65;
     const COUNT: Sample = [16_384, -8_192, 1, 2_048, -4_096, 1];
     const SI: Channels<6> = Channels::new(
         COUNTS,
@@ -176,7 +178,7 @@ fn channels_are_found_by_name_and_come_in_the_files_unit() {
             "accelerometer_m_s2[1]",
             "Accel Z",
         ],
-        ["rad/s", "rad/s", "deg/s", "m/s²", "g", "m/s/s"],
+        [[1.0, 0.0], [1.0, 0.0], [DEGREE, 0.0], [0.0, 1.0], [0.0, G], [0.0, 1.0]],
         [1.0, 1.0, 1.0, 1.0, 1.0, 10.0],
     );
     let close =
@@ -190,7 +192,7 @@ fn channels_are_found_by_name_and_come_in_the_files_unit() {
     close(sample[5], 9.806_65 / 2048.0 * 10.0);
     // In counts of the sensor itself, and of another scale.
     const RAW: Channels<2> =
-        Channels::new(COUNTS, ["acc_x", "acc_x2"], ["g", "g"], [2048.0, 20_480.0]);
+        Channels::new(COUNTS, ["acc_x", "acc_x2"], [[0.0, G]; 2], [2048.0, 20_480.0]);
     assert_eq!(RAW.sample::<i16>([0, 0, 0, -2_048, 0, 15]), [-2_048, 150]);
     assert_eq!(RAW.sample::<i16>([0, 0, 0, 32_767, 0, -32_768]), [32_767, i16::MIN]);
 }

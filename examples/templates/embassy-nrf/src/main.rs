@@ -36,7 +36,7 @@ bind_interrupts!(struct Interrupts {
 
 /// The sensor's axes in the order of the flight's channels, in their units.
 const CHANNELS: Channels<{ flight::CHANNELS }> =
-    Channels::new(Sensor::COUNTS, flight::NAMES, flight::UNITS, flight::COUNTS);
+    Channels::new(Sensor::COUNTS, flight::NAMES, flight::SI, flight::COUNTS);
 static EVENTS: EventQueue<512> = EventQueue::new(Overflow::DropOldest);
 static ROUNDS: Rounds = Rounds::new();
 
@@ -94,6 +94,7 @@ async fn main(spawner: Spawner) {
     let (mut gather, mut seen) = (Ticker::every(Duration::from_millis(5)), 0);
     loop {
         gather.next().await;
+        sender.observe(ROUNDS.time(flight::PERIOD));
         // A frame that is not through by then is a gap to the far end.
         _ = with_timeout(Duration::from_millis(20), sender.send(&mut events, &mut port)).await;
         if ROUNDS.went_on(&mut seen) {

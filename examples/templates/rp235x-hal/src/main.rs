@@ -48,11 +48,11 @@ const PERIOD: MicrosDurationU64 = MicrosDurationU64::from_ticks(flight::PERIOD a
 
 /// The sensor's axes in the order of the flight's channels, in their units.
 const CHANNELS: Channels<{ flight::CHANNELS }> =
-    Channels::new(Sensor::COUNTS, flight::NAMES, flight::UNITS, flight::COUNTS);
+    Channels::new(Sensor::COUNTS, flight::NAMES, flight::SI, flight::COUNTS);
 static EVENTS: EventQueue<512> = EventQueue::new(Overflow::DropOldest);
 static ROUNDS: Rounds = Rounds::new();
 /// Samples that main sends together: those of 5 ms.
-const GATHER: u32 = 5_000_u32.div_ceil(flight::PERIOD as u32);
+const GATHER: u32 = 5_000_u32.div_ceil(flight::PERIOD);
 
 type Flown = Station<Sensor, [&'static flight::Code; flight::CHANNELS], { flight::CHANNELS }>;
 type Alarm = Alarm0<CopyableTimer0>;
@@ -134,6 +134,7 @@ fn main() -> ! {
     loop {
         cortex_m::asm::wfi();
         if ROUNDS.passed(GATHER, &mut seen) {
+            sender.observe(ROUNDS.time(flight::PERIOD));
             while let Some(frame) = sender.next_frame(&mut events) {
                 port.write_full_blocking(frame);
             }

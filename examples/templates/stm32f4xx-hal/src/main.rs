@@ -36,11 +36,11 @@ const BAUD: u32 = 921_600;
 
 /// The sensor's axes in the order of the flight's channels, in their units.
 const CHANNELS: Channels<{ flight::CHANNELS }> =
-    Channels::new(Sensor::COUNTS, flight::NAMES, flight::UNITS, flight::COUNTS);
+    Channels::new(Sensor::COUNTS, flight::NAMES, flight::SI, flight::COUNTS);
 static EVENTS: EventQueue<512> = EventQueue::new(Overflow::DropOldest);
 static ROUNDS: Rounds = Rounds::new();
 /// Samples that main sends together: those of 5 ms.
-const GATHER: u32 = 5_000_u32.div_ceil(flight::PERIOD as u32);
+const GATHER: u32 = 5_000_u32.div_ceil(flight::PERIOD);
 
 type Flown = Station<Sensor, [&'static flight::Code; flight::CHANNELS], { flight::CHANNELS }>;
 type Own = (Flown, CounterUs<TIM2>);
@@ -93,7 +93,7 @@ fn main() -> ! {
     let mut sender = Sender::of(flight::transmitter(session));
 
     let mut timer = p.TIM2.counter_us(&mut rcc);
-    timer.start(u32::from(flight::PERIOD).micros()).expect("a period of µs");
+    timer.start(flight::PERIOD.micros()).expect("a period of µs");
     timer.listen(Event::Update);
     let (bank, every) = (flight::BANK, flight::KEYFRAME_EVERY);
     let station = Station::new(sensor, CHANNELS, bank, flight::PERIOD, every);
@@ -106,6 +106,7 @@ fn main() -> ! {
     loop {
         cortex_m::asm::wfi();
         if ROUNDS.passed(GATHER, &mut seen) {
+            sender.observe(ROUNDS.time(flight::PERIOD));
             while let Some(frame) = sender.next_frame(&mut events) {
                 // A UART without flow control takes every byte.
                 _ = port.bwrite_all(frame);

@@ -81,7 +81,7 @@ impl Rust {
     }
 
     /// Writes a number of the sample type.
-    fn number(self, value: f64) -> String {
+    pub fn number(self, value: f64) -> String {
         let bits = (value / self.sample.step() + 0.5).floor() as i64;
         match self.sample {
             SampleType::F32 => format!("{:?}", value as f32),

@@ -1,7 +1,7 @@
 //! `spikewire advise`: describes a log, and names the scheme that suits each of its channels.
 
 use crate::inputs::{LogOptions, ManyChannels};
-use crate::options::{answer, whole};
+use crate::options::{answer, check_ending, whole};
 use crate::report::{Counts, Log, Report, is_stdout};
 use crate::stop::Stop;
 use crate::words::{self, tell_of};
@@ -113,6 +113,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
     if (options.output.is_some() || options.picture.is_some()) && logs.len() > 1 {
         bail!("-o and --picture take one log; there are {}", logs.len());
     }
+    check_ending(options.output.as_deref(), "toml", "a flight file")?;
     let is_stdout = is_stdout(options.output.as_deref(), options.json)?;
     let stop = Stop::new(None)?;
     let ends = is_single && !options.json;

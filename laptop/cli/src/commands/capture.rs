@@ -9,6 +9,10 @@ use std::path::PathBuf;
 /// Needs a build with `--features capture`. The output is usually piped to `listen`: `spikewire capture --chip
 /// STM32F405RG | spikewire listen`.
 #[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  spikewire capture --chip STM32F405RG -o captured.bytes
+  spikewire capture --chip RP2040 --seconds 60 | spikewire listen --from link")]
 pub(crate) struct Capture {
     /// The chip's name in probe-rs, such as STM32F405RG or RP2040
     #[arg(long)]

@@ -18,11 +18,13 @@ use std::path::PathBuf;
 ///
 /// Settings follow the format's name after commas. The settings of `link,period=5000,channels=6,jitter=5` only make
 /// frames shorter. `period` is the time between samples in µs, `channels` is the number of channels, and `jitter` is
-/// the number of bits for the jitter of times in µs, with its sign. In `edvs:e2,up=0`, the polarity bit is 0 for up and
+/// the number of bits for the jitter of times in µs, with its sign. `step-bits=4` adds step numbers, by which step codes heal after
+/// lost frames. In `edvs:e2,up=0`, the polarity bit is 0 for up and
 /// 1 for down. In `eieio,base=0x70000,step=1000,signed=1`, `base` is the key (number in a datagram) of address 0, and
 /// `step` is the length of a time step in µs. With `signed=1`, each address has two keys: the first for down, the
 /// second for up. `es,width=320,height=240` (also of `evt2` and `evt3`) is the size of a camera's picture, if the input does
-/// not say it. `evt2,pixels=1` reads columns and rows from a stream without a header.
+/// not say it. `evt2,pixels=1` reads columns and rows from a stream without a header. `evt21,legacy=1` is the order of the bytes
+/// in a word, where neither the header nor the words show it: 1 for the IMX636, 0 for the `GenX320`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

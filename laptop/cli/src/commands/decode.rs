@@ -25,7 +25,7 @@ use tempfile::NamedTempFile;
 /// exact at events and at gaps, and evenly spaced in between.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Example:
+Examples:
   spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv -o spikes.csv
   spikewire decode spikes.csv -o decoded.csv
   spikewire decode --spikes dataset/events/flight-0123456789ab.parquet -o spikes.csv")]

@@ -1,6 +1,7 @@
 //! `spikewire emit`: writes source code for firmware, from a flight file (`flight.toml`) or from files of parameters.
 
 use crate::inputs::read_flight;
+use crate::options::check_ending;
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand};
 use lab::coding::Coding;
@@ -12,6 +13,10 @@ use std::path::{Path, PathBuf};
 
 /// Write source code for firmware, from a flight file (`flight.toml`) or from files of parameters.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  spikewire emit rust --flight flight.toml -o src/flight.rs
+  spikewire emit c roll.toml -o roll")]
 pub(crate) struct Emit {
     #[command(subcommand)]
     language: Language,
@@ -27,7 +32,7 @@ enum Language {
 /// build script can make the same module.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Example:
+Examples:
   spikewire advise flight.ulg --loop-bandwidth 4 -o flight.toml
   spikewire emit rust --flight flight.toml -o src/flight.rs")]
 struct Rust {
@@ -43,7 +48,7 @@ struct Rust {
 /// parameters in flash. From flight files, it contains the senders and receivers of the flights.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Example:
+Examples:
   spikewire tune flight.csv --channel gyro_x --scheme sf --emit toml -o roll.toml
   spikewire emit c roll.toml --spikewire ../spikewire -o roll
   cd roll
@@ -74,6 +79,7 @@ struct C {
 pub(crate) fn run(options: &Emit) -> Result<()> {
     let C { params, flight, output, spikewire } = match &options.language {
         Language::Rust(Rust { flight, output }) => {
+            check_ending(output.as_deref(), "rs", "Rust")?;
             let text = rust(&read_flight(flight)?)?;
             let mut output = Output::open(output.as_deref(), flight)?;
             output.write_all(text.as_bytes())?;

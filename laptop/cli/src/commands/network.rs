@@ -3,7 +3,7 @@
 
 use super::network_rule::RuleOptions;
 use crate::inputs::InputOptions;
-use crate::options::{SchemeOptions, schemes};
+use crate::options::{SchemeOptions, check_ending, schemes};
 use crate::report::{Counts, Log, Report, is_stdout};
 use crate::words;
 use anyhow::{Context, Result, ensure};
@@ -12,7 +12,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::bank::Bank;
-use lab::fit::rounding;
+use lab::fit::{Fit, rounding};
 use lab::input::{InputOptions as Input, above_zero};
 use lab::network::{
     Brought, CHIPS, Chip, Compare, ControllerRequest, Cost, Figures, File, HeldOut, Model,
@@ -58,7 +58,7 @@ use std::path::{Path, PathBuf};
 /// set parts of it. A wrong choice then changes the spikes, and the report cannot show it.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Example:
+Examples:
   spikewire network trained.nir --scheme position --neurons 20 --column gyro_x flight.csv -o src/network.rs
   spikewire network trained.nir --on controller --as snntorch --reset subtract-late spikes.txt -o src/network.rs
   spikewire network trained.nir --on controller --trained-spikes outputs.txt spikes.txt -o src/network.rs")]
@@ -223,6 +223,7 @@ impl Converted {
 /// or if the output cannot be written.
 pub(crate) fn run(options: &Network) -> Result<()> {
     let Network { trained: path, output, .. } = options;
+    check_ending(output.as_deref(), "rs", "Rust")?;
     is_stdout(output.as_deref(), options.json)?;
     let input = &options.input.to_lab()?;
     ensure!(
@@ -397,7 +398,7 @@ fn driven(
     parameters.check(scheme.info())?;
     let recordings = Recording::read_all(input)?;
     let first = recordings.first().context("there is no channel")?;
-    let (samples, rate) = (first.values.len(), first.rate);
+    let (samples, rate) = (first.values.len(), first.steady_rate()?);
     let mut notes = first.notes();
     let columns: Vec<Vec<f64>> = recordings.into_iter().map(|recording| recording.values).collect();
 
@@ -418,6 +419,13 @@ fn driven(
         columns.len(),
         settings.len()
     );
+    for (column, settings) in columns.iter().zip(&settings) {
+        let mut fit = Fit::new(scheme, settings);
+        fit.observe(column);
+        // A code without a spike shows in the network's own figures.
+        let spikes = 1;
+        notes.extend(fit.notes(settings, spikes).lines().map(|note| Words::from(note.to_owned())));
+    }
     let mut bank = Bank::new(scheme, &settings)?;
     let mut events = Vec::new();
     bank.encode(&columns, &mut events);

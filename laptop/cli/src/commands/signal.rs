@@ -12,7 +12,8 @@ use std::path::PathBuf;
 /// samples a second.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Example:
+Examples:
+  spikewire signal --seconds 15 -o signal.csv
   spikewire signal --seconds 15 | spikewire encode --scheme sf --threshold 0.5 -")]
 pub(crate) struct Signal {
     /// Duration in seconds, 0 to 1000000

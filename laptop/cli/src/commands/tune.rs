@@ -1,7 +1,7 @@
 //! `spikewire tune`: finds the parameters of a scheme that suit flight logs best.
 
 use crate::inputs::{LogOptions, ManyChannels};
-use crate::options::{FREE, answer, augment, given, option_group, whole};
+use crate::options::{FREE, answer, augment, check_ending, given, option_group, whole};
 use crate::report::{Counts, Log, Report};
 use crate::stop::Stop;
 use crate::words::{self, option, tell_of};
@@ -20,7 +20,7 @@ use lab::trial::Recording;
 use lab::tune::report::{Cut, Row, print};
 use lab::tune::stretch::HoldOut;
 use lab::tune::{Goal, Limits, Over, Stretch, TuneRequest, Tuned, costs, emit, tune};
-use lab::unit::known_unit;
+use lab::unit::unit_of_name;
 use lab::watch::{Progress, Watch};
 use serde::Serialize;
 use serde_json::json;
@@ -172,6 +172,13 @@ fn is_fixable(parameter: &Parameter) -> bool {
 /// # Errors
 /// Returns an error if the logs or options are invalid, or if no settings satisfy the limits.
 pub(crate) fn run(options: &Tune) -> Result<()> {
+    let (ending, what) = match options.emit {
+        Some(Emit::Rust) => ("rs", "Rust"),
+        Some(Emit::Flight) => ("toml", "a flight file"),
+        // Without `--emit` there is no output.
+        Some(Emit::Toml) | None => ("toml", "a file of parameters"),
+    };
+    check_ending(options.output.as_deref(), ending, what)?;
     let mut request = options.request()?;
     request.check()?;
     let Found { logs: paths, is_single, .. } = options.logs.find()?;
@@ -349,7 +356,7 @@ impl Tune {
     }
 
     fn panel(cut: &Cut, curves: Vec<lab::tune::Curve>) -> Panel {
-        Panel { title: cut.name.clone(), unit: known_unit(&cut.name).map(str::to_owned), curves }
+        Panel { title: cut.name.clone(), unit: unit_of_name(&cut.name).map(str::to_owned), curves }
     }
 
     /// Prints a table of the tuned settings for each channel. The tables go to standard output, or to standard error if

@@ -10,8 +10,18 @@ use spikewire_flight::Flight;
 use std::{env, error::Error, fmt::Write, fs, path::Path};
 
 /// Flights whose bits `tests/both_ends.rs` compares.
-const FLOWN: [&str; 9] =
-    ["asf", "asf_q16_16", "first_order", "grf_slots", "notch", "sf", "sf_q2_14", "sod", "sod_i32"];
+const FLOWN: [&str; 10] = [
+    "asf",
+    "asf_q16_16",
+    "first_order",
+    "grf_slots",
+    "healing",
+    "notch",
+    "sf",
+    "sf_q2_14",
+    "sod",
+    "sod_i32",
+];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let directory = env::args().nth(1).ok_or("no directory")?;

@@ -1,5 +1,6 @@
 //! Advice on one scheme for all channels together. The schemes are ranked by bytes a second on the link.
 
+use super::bytes::{Rival, Traffic, rivals, sent};
 use super::flown::{Error, Flown, flown};
 use super::{Advice, AdviseRequest, CUT_SHORT, Errors, Tuning};
 use crate::Result;
@@ -11,11 +12,9 @@ use crate::tune::RequestKind;
 use crate::tune::report::Row;
 use crate::tune::search::Budget;
 use crate::watch::{Progress, Watch};
-use catalogue::run::{Asked, Event as Fired, Value};
+use catalogue::run::{Asked, Value};
 use catalogue::{Kind, Parameter, Search};
 use serde::Serialize;
-use spikewire::link::{MAX_FRAME, Session, Transmitter};
-use spikewire::{Event, FromItems, Item, Keyframe, Tick};
 
 /// Sample rate of the slowest control loop that the simulator flew, in Hz.
 const SLOWEST: f64 = 250.0;
@@ -23,6 +22,14 @@ const SLOWEST: f64 = 250.0;
 /// Default time between keyframes, in seconds. A receiver that joins late waits up to this long for a keyframe. If the
 /// request has a control loop, a scheme whose simulated flights had keyframes keeps the time of those flights instead.
 const KEYFRAMES: f64 = 1.0;
+
+/// Time between keyframes of a code whose lost steps heal at the next event, in seconds. A receiver that joins late waits up
+/// to this long.
+const HEALING_KEYFRAMES: f64 = 0.5;
+
+/// Low bits of a step number that an event of a step code carries, so that a loss of 7 net steps or fewer heals at the next
+/// event.
+const STEP_BITS: u8 = 4;
 
 /// Reason that there is no bank, and what helps.
 const NONE: &str = "no scheme suits all channels, for the reasons on their pages; fewer channels, a larger RMSE given for \
@@ -65,6 +72,8 @@ struct Bank {
     scheme: &'static str,
     /// Bytes a second on the link, including keyframes.
     bytes_per_second: f64,
+    /// What could be sent in place of the code: the samples first.
+    rivals: Vec<Rival>,
     /// Events a second, over all channels.
     events_per_second: f64,
     /// Number of samples from one keyframe to the next.
@@ -202,6 +211,7 @@ impl BankAdvice {
                  which a queue must hold",
                 best.events_per_second, best.bytes_per_second, best.keyframe_every, best.most_events
             ));
+            lines.push(best.beside_rivals());
             if let Some(filter) = best.flight.filter {
                 lines.push(format!("{} before the code: vibration takes spikes", words(filter)));
             }
@@ -256,6 +266,23 @@ impl BankAdvice {
     }
 }
 
+impl Bank {
+    /// Says how many bytes its rivals take, and which of them take fewer than the code.
+    fn beside_rivals(&self) -> String {
+        let words = |own: &Rival| format!("{} would take {:.0}", own.name, own.bytes_per_second);
+        let all = self.rivals.iter().map(words).collect::<Vec<_>>().join(", ");
+        let line = format!("in frames of 4 bytes and the values, {all}");
+        let is_better = |own: &&Rival| own.bytes_per_second <= self.bytes_per_second;
+        let better: Vec<&str> =
+            self.rivals.iter().filter(is_better).map(|own| own.name.as_str()).collect();
+        if better.is_empty() {
+            line
+        } else {
+            format!("{line}; the code saves no bytes beside {}", better.join(", nor beside "))
+        }
+    }
+}
+
 impl BankChannel {
     fn words(&self, is_filtered: bool) -> String {
         let Self { name, unit, parameters, rmse, held_out, rmse_of_samples } = self;
@@ -284,8 +311,9 @@ fn bank(
     let Some(rows) = rows else { return Ok(Ok(None)) };
     let in_loop = request.loop_bandwidth.is_some();
     let flown = flown(scheme.name()).filter(|_| in_loop);
-    let apart = flown.and_then(Flown::keyframes).unwrap_or(KEYFRAMES);
-    let shared = shared(scheme, &rows, heard.len());
+    let heals = scheme.info().has_baseline();
+    let apart = apart(scheme, flown);
+    let mut shared = shared(scheme, &rows, heard.len());
     let mut is_cut_short = false;
     let (mut parts, mut held_out) = (Vec::new(), Vec::new());
     for (advice, recording) in heard {
@@ -310,7 +338,8 @@ fn bank(
                 is_stopped: watch.is_stopped,
                 tick: &|_, _| (),
             };
-            match advice.tuned(request, scheme, recording, &shared, &budget)? {
+            let fixed = shared.or(&advice.anchored(scheme));
+            match advice.tuned(request, scheme, recording, &fixed, &budget)? {
                 Tuning::Reached(own) => {
                     is_cut_short |= own.row.is_cut_short;
                     held_out.pop();
@@ -332,12 +361,16 @@ fn bank(
             asked,
         });
     }
+    share_start(&mut parts, &mut shared);
     let flight = Flight::new(Parts {
         scheme: scheme.info(),
         sample: request.sample,
         period: period(rate)?,
         keyframe_every: (rate * apart).round().max(1.0) as u32,
         clock_ppm: CLOCK_PPM,
+        step_bits: if heals { STEP_BITS } else { 0 },
+        gathering: 0,
+        full_every: Parts::FULL_EVERY,
         filter: heard[0].0.filter(scheme, request.sample).map(|own| own.filter),
         shared,
         channels: parts,
@@ -346,7 +379,8 @@ fn bank(
         Ok(flight) => flight,
         Err(error) => return Ok(Err(format!("makes no bank: {error}"))),
     };
-    let Judged { trials, channels, coarser } = judged(request, scheme, heard, &flight, held_out)?;
+    let Judged { trials, encoded, channels, coarser } =
+        judged(request, scheme, heard, &flight, held_out)?;
     // Channels whose unit is unknown are among the open questions.
     let unknown = |name: &String| {
         heard.iter().any(|(own, _)| own.inertial.is_none() && own.look.name == *name)
@@ -354,11 +388,12 @@ fn bank(
     let lacks_filter = flown.is_some_and(|own| own.filter().is_some()) && flight.filter.is_none();
     let is_as_flown = coarser.is_empty() && !lacks_filter;
     let samples = heard.iter().map(|(_, own)| own.values.len()).min().unwrap_or_default() as u64;
-    let (events, bytes) = sent(&flight, &trials, samples, in_loop)?;
+    let Traffic { events, bytes } = sent(&flight, &trials, samples, in_loop)?;
     let seconds = samples as f64 / rate;
     Ok(Ok(Some(Bank {
         scheme: scheme.name(),
         bytes_per_second: bytes as f64 / seconds,
+        rivals: rivals(&flight, &encoded, rate),
         events_per_second: events as f64 / seconds,
         keyframe_every: flight.keyframe_every,
         most_events: most_events(&flight),
@@ -371,9 +406,32 @@ fn bank(
     })))
 }
 
+/// Returns the time between keyframes, in seconds. `flown` has the flights of the scheme in a control loop.
+fn apart(scheme: Scheme, flown: Option<&Flown>) -> f64 {
+    if scheme.info().has_baseline() {
+        return HEALING_KEYFRAMES;
+    }
+    flown.and_then(Flown::keyframes).unwrap_or(KEYFRAMES)
+}
+
+/// Moves the value from which all channels start to the shared parameters, if it is the same for all.
+fn share_start(channels: &mut [Channel], shared: &mut Asked) {
+    let Some(start) = channels.first().and_then(|own| own.asked.get("start")).cloned() else {
+        return;
+    };
+    if channels.iter().all(|own| own.asked.get("start") == Some(&start)) {
+        shared.set("start", start);
+        for channel in channels {
+            channel.asked.unset("start");
+        }
+    }
+}
+
 /// A bank's channels as they are coded: a trial of each, its words, and the names of those that are coarser than what flew.
 struct Judged {
     trials: Vec<Trial>,
+    /// The samples of each channel behind its filter.
+    encoded: Vec<Vec<f64>>,
     channels: Vec<BankChannel>,
     coarser: Vec<String>,
 }
@@ -386,7 +444,7 @@ fn judged(
     flight: &Flight,
     held_out: Vec<Option<f64>>,
 ) -> Result<Judged> {
-    let mut trials = Vec::new();
+    let (mut trials, mut encoded) = (Vec::new(), Vec::new());
     let (mut channels, mut coarser) = (Vec::new(), Vec::new());
     for (((advice, recording), channel), held_out) in
         heard.iter().zip(&flight.channels).zip(held_out)
@@ -394,7 +452,7 @@ fn judged(
         let ready = advice.ready(request, scheme, recording)?;
         let trial = Trial::new(scheme, &flight.asked(channel), flight.sample, ready.recording())?;
         let errors = Errors::of(ready.recording(), &trial.decoded);
-        if ready.flown.is_none_or(|(_, flown)| !errors.are_within(flown)) {
+        if ready.flown.as_ref().is_none_or(|(_, flown)| !errors.are_within(*flown)) {
             coarser.push(recording.name.clone());
         }
         let asked = channel.asked.iter().map(|(name, value)| (name, value.clone()));
@@ -407,8 +465,9 @@ fn judged(
             rmse_of_samples: Errors::of(recording, &trial.decoded).rmse,
         });
         trials.push(trial);
+        encoded.push(ready.recording().values.clone());
     }
-    Ok(Judged { trials, channels, coarser })
+    Ok(Judged { trials, encoded, channels, coarser })
 }
 
 /// Returns the maximum number of events of a sample, over all channels.
@@ -490,48 +549,4 @@ fn shared(scheme: Scheme, rows: &[&Row], channels: usize) -> Asked {
         }
     }
     shared
-}
-
-/// Returns the total number of events of all channels, and the number of bytes that the link sends for `samples` samples,
-/// including keyframes. If `in_loop` is true, each sample is sent in a frame of its own, as a control loop needs it. Otherwise,
-/// events of several samples share a frame.
-fn sent(flight: &Flight, trials: &[Trial], samples: u64, in_loop: bool) -> Result<(usize, usize)> {
-    let (neurons, period) = (flight.neurons() as u16, u64::from(flight.period.get()));
-    let mut events: Vec<Fired> = Vec::new();
-    for (channel, trial) in (0..).zip(trials) {
-        let own = trial.events.iter();
-        events.extend(own.map(|own| Fired { neuron: channel * neurons + own.neuron, ..*own }));
-    }
-    events.sort_by_key(|own| (own.sample, own.slot, own.neuron));
-    let mut rest = &events[..];
-    let mut transmitter = Transmitter::new(flight.coding(), Session::counted(0))
-        .with_fingerprint(flight.fingerprint());
-    let (mut items, mut bytes, mut buffer) = (Vec::new(), 0, [0; MAX_FRAME]);
-    for sample in 0..samples {
-        let tick = Tick::from_micros(sample * period);
-        let own = rest.iter().take_while(|own| own.sample <= sample).count();
-        let (now, later) = rest.split_at(own);
-        rest = later;
-        items.extend(now.iter().map(|own| {
-            let tick = tick + u32::from(own.slot) * flight.slot_ticks();
-            Item::Event(Event { tick, address: own.neuron, polarity: own.polarity })
-        }));
-        if sample.is_multiple_of(flight.keyframe_every.into()) {
-            if flight.scheme.has_first_value() {
-                items.extend((0..).zip(trials).map(|(channel, trial)| {
-                    let value = trial.decoded.get(sample as usize).copied().unwrap_or_default();
-                    Item::Keyframe(Keyframe::new(tick, channel * neurons, value as f32))
-                }));
-            } else {
-                items.push(Item::Heartbeat { tick, address: 0 });
-            }
-        }
-        if in_loop || sample + 1 == samples {
-            let mut source = FromItems(items.drain(..));
-            while let Some(frame) = transmitter.next_frame(&mut source, &mut buffer)? {
-                bytes += frame.len();
-            }
-        }
-    }
-    Ok((events.len(), bytes))
 }

@@ -16,7 +16,7 @@ pub use restore::restore;
 
 use crate::coding::Coding;
 use crate::encode::{Encoded, encode_from};
-use crate::flight::{Flight, Sampled};
+use crate::flight::{self, Flight, Sampled};
 use crate::input::{ChannelOptions, InputOptions, LogKind, Source, TableKind};
 use crate::output::{Output, OutputKind};
 use crate::watch::Progress;
@@ -335,7 +335,7 @@ pub fn read<T>(
 ) -> Result<T> {
     let mut channel = channel.clone();
     if kind.is_some() {
-        (channel.delimiter, channel.header, channel.rate) = (None, None, None);
+        (channel.delimiter, channel.header) = (None, None);
     }
     if kind == Some(Kind::Ulog) {
         (channel.time, channel.time_unit) = (None, None);
@@ -458,7 +458,9 @@ impl Request {
                 let open = || -> Result<Box<dyn Source + '_>> {
                     Ok(Box::new(Sampled::new(flight, input.open()?)?))
                 };
-                encode_from(&open, input, (scheme, sample, &asked), parts)?
+                let mut encoded = encode_from(&open, input, (scheme, sample, &asked), parts)?;
+                encoded.notes.extend(flight::other_rate(flight, encoded.clock.rate()));
+                encoded
             }
         };
         let Encoded { output, names, spikes, summary, clock, notes } = encoded;

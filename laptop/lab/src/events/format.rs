@@ -8,7 +8,7 @@ use crate::{Error, Result};
 use catalogue::run::SampleType;
 use spikewire::Tick;
 use spikewire::link::Coding;
-use spikewire_cameras::format::{Edvs, EdvsTime};
+use spikewire_cameras::format::{Edvs, EdvsTime, Evt21Order};
 use std::fmt;
 use std::num::NonZeroU32;
 use std::str::FromStr;
@@ -34,7 +34,10 @@ pub enum Format {
         has_pixels: bool,
     },
     /// EVT 2.1, in a file `.raw`; read only.
-    Evt21,
+    Evt21 {
+        /// The order of the bytes in a word. By default, the header says it, or the words show it.
+        order: Option<Evt21Order>,
+    },
     /// EVT3, in a file `.raw`.
     Evt3 {
         /// As for [`EventStream`](Self::EventStream).
@@ -62,7 +65,7 @@ impl Format {
             Self::Evt2 { has_pixels, .. } => {
                 Box::new(prophesee::Reader::new(Version::Evt2, has_pixels))
             }
-            Self::Evt21 => Box::new(prophesee::Reader::new(Version::Evt21, true)),
+            Self::Evt21 { order } => Box::new(prophesee::Reader::of_evt21(order)),
             Self::Evt3 { .. } => Box::new(prophesee::Reader::new(Version::Evt3, false)),
             Self::Eieio(board) => Box::new(eieio::Reader::new(board)),
             Self::Csv => Box::new(csv::Reader::new(file)),
@@ -86,7 +89,9 @@ impl Format {
             Self::Evt2 { size, .. } => {
                 Box::new(pixels::Writer::new(pixels::Format::Evt2, size, drops))
             }
-            Self::Evt21 => return Err(EventsKind::ReadOnly { format: self.to_string() }.into()),
+            Self::Evt21 { .. } => {
+                return Err(EventsKind::ReadOnly { format: self.to_string() }.into());
+            }
             Self::Evt3 { size } => Box::new(pixels::Writer::new(pixels::Format::Evt3, size, drops)),
             Self::Eieio(board) => Box::new(eieio::Writer::new(board, drops)),
             Self::Csv => Box::new(csv::Writer::new(None)),
@@ -111,7 +116,7 @@ impl fmt::Display for Format {
             Self::Edvs(_, EdvsTime::Bits32) => "edvs:e4",
             Self::EventStream { .. } => "es",
             Self::Evt2 { .. } => "evt2",
-            Self::Evt21 => "evt21",
+            Self::Evt21 { .. } => "evt21",
             Self::Evt3 { .. } => "evt3",
             Self::Eieio(_) => "eieio",
             Self::Csv => "csv",
@@ -133,10 +138,12 @@ impl FromStr for Format {
                 let channels = settings.number("channels", 8)?;
                 let period = settings.number("period", 1_000)?;
                 let jitter: u8 = settings.number("jitter", 0)?;
-                if period == 0 || jitter > 15 {
+                let step_bits: u8 = settings.number("step-bits", 0)?;
+                if !(1..1 << 24).contains(&period) || jitter > 15 || step_bits > 4 {
                     return Err(EventsKind::PeriodOrJitter { text: text.to_owned() }.into());
                 }
-                Self::Link(Coding::for_channels(channels, period).with_jitter_bits(jitter))
+                let coding = Coding::for_channels(channels, period);
+                Self::Link(coding.with_jitter_bits(jitter).with_step_bits(step_bits))
             }
             "edvs" => return Err(EventsKind::TimesOfEdvs.into()),
             "edvs:e0" => edvs(EdvsTime::None, &mut settings)?,
@@ -149,7 +156,14 @@ impl FromStr for Format {
                 let size = settings.size()?;
                 Self::Evt2 { size, has_pixels: settings.bit("pixels", false)? }
             }
-            "evt21" => Self::Evt21,
+            "evt21" => {
+                let order = match settings.optional_bit("legacy")? {
+                    None => None,
+                    Some(true) => Some(Evt21Order::Halves),
+                    Some(false) => Some(Evt21Order::Little),
+                };
+                Self::Evt21 { order }
+            }
             "evt3" => Self::Evt3 { size: settings.size()? },
             "eieio" => {
                 let base = settings.number("base", 0)?;
@@ -210,6 +224,14 @@ impl<'a> Settings<'a> {
             bit @ 0..=1 => Ok(bit == 1),
             number => Err(EventsKind::NotABit { key: key.to_owned(), number }.into()),
         }
+    }
+
+    /// As [`bit`](Self::bit). Returns `None` if the key is missing.
+    fn optional_bit(&mut self, key: &str) -> Result<Option<bool>> {
+        if !self.0.iter().any(|pair| pair.0 == key) {
+            return Ok(None);
+        }
+        self.bit(key, false).map(Some)
     }
 
     /// Removes the pairs `width` and `height`, and returns them if they are there.

@@ -13,7 +13,9 @@ kinds! {
         OutOfRange { key: String, text: String } => ("{key}={text} is no number of its range"),
         NotABit { key: String, number: u32 } => ("{key}={number} must be 0 or 1"),
         TakesNoKey { format: String, key: String } => ("{format} takes no {key}="),
-        PeriodOrJitter { text: String } => ("{text}: the period must be above 0 µs, the jitter at most 15 bits"),
+        PeriodOrJitter { text: String } => (
+            "{text}: the period must be 1 to 16777215 µs, the jitter at most 15 bits, step-bits at most 4"
+        ),
         Step { text: String } => ("{text}: the step must be above 0 µs"),
         HalfASize => ("width= and height= go together, and are 1 or more"),
         ReadOnly { format: String } => ("{format} is read, and not written; evt2 and evt3 are written"),
@@ -24,6 +26,10 @@ kinds! {
             ("the header says EVT {version}, which the format `{name}` reads"),
         ByteOrder { order: String } =>
             ("the header says `endianness={order}`, where `little` and `legacy` are read"),
+        WhichByteOrder => (
+            "the header does not say the order of the bytes, and the words do not show it: `evt21,legacy=0` (GenX320) \
+             or `evt21,legacy=1` (IMX636) says it"
+        ),
         FarRows { events: u64 } => (
             "events without an address, in rows from 32 on: {events}; `evt2,pixels=1` reads columns and rows"
         ),

@@ -79,6 +79,12 @@ pub(super) struct Reader {
     has_pixels: bool,
     /// Number of events in rows that no address has.
     far_rows: u64,
+    /// The order of the bytes in a word that the user gave.
+    order: Option<Evt21Order>,
+    /// The words by which the order of their bytes is found, until it is.
+    undecided: Option<Vec<u8>>,
+    /// The order that the words showed.
+    found_order: Option<Evt21Order>,
 }
 
 enum Decoder {
@@ -122,7 +128,21 @@ impl Reader {
             Version::Evt21 => Decoder::Evt21(Evt21Pixels::decoder(Evt21Order::Little)),
             Version::Evt3 => Decoder::Evt3(Evt3Pixels::decoder()),
         };
-        Self { version, header: Header::default(), decoder, has_pixels, far_rows: 0 }
+        Self {
+            version,
+            header: Header::default(),
+            decoder,
+            has_pixels,
+            far_rows: 0,
+            order: None,
+            undecided: None,
+            found_order: None,
+        }
+    }
+
+    /// Makes a reader of EVT 2.1. Without an `order` of the bytes in a word, the header says it, or the words show it.
+    pub(super) fn of_evt21(order: Option<Evt21Order>) -> Self {
+        Self { order, ..Self::new(Version::Evt21, true) }
     }
 
     /// Applies the header, which is over.
@@ -133,16 +153,57 @@ impl Reader {
             return Err(EventsKind::OtherVersion { version: version.number(), name }.into());
         }
         if let Decoder::Evt21(decoder) = &mut self.decoder {
-            *decoder = Evt21Pixels::decoder(match order.as_deref() {
-                None | Some("little") => Evt21Order::Little,
-                Some("legacy") => Evt21Order::Halves,
-                Some(other) => return Err(EventsKind::ByteOrder { order: other.to_owned() }.into()),
-            });
+            let order = match (self.order, order.as_deref()) {
+                (Some(order), _) => Some(order),
+                (None, None) => None,
+                (None, Some("little")) => Some(Evt21Order::Little),
+                (None, Some("legacy")) => Some(Evt21Order::Halves),
+                (None, Some(other)) => {
+                    return Err(EventsKind::ByteOrder { order: other.to_owned() }.into());
+                }
+            };
+            match order {
+                Some(order) => *decoder = Evt21Pixels::decoder(order),
+                None => self.undecided = Some(Vec::new()),
+            }
         }
         let addresses = Size { width: ADDRESS_COLUMNS, height: ADDRESS_ROWS };
         let has_addresses =
             if *is_there { *size == Some(addresses) } else { self.version == Version::Evt2 };
         self.has_pixels |= !has_addresses;
+        Ok(())
+    }
+
+    /// Takes the next words. As long as the order of their bytes is unknown, they wait.
+    fn take(&mut self, bytes: &[u8], items: &mut Vec<Item>) -> Result<()> {
+        /// Number of bytes that show the order surely, and number after which they never will.
+        const FEWEST: usize = 64 * WORD;
+        const MOST: usize = 1 << 16;
+        let Some(mut waiting) = self.undecided.take() else {
+            self.words(bytes, items);
+            return Ok(());
+        };
+        waiting.extend_from_slice(bytes);
+        let is_early = waiting.len() < FEWEST
+            || waiting.len() < MOST && order_of(&waiting, self.header.size).is_none();
+        if is_early {
+            self.undecided = Some(waiting);
+            return Ok(());
+        }
+        self.decide(&waiting, items)
+    }
+
+    /// Decides the order of the bytes by the words that have waited, and reads these.
+    fn decide(&mut self, waiting: &[u8], items: &mut Vec<Item>) -> Result<()> {
+        self.found_order = order_of(waiting, self.header.size);
+        let orders = [Evt21Order::Little, Evt21Order::Halves];
+        // Without a time word, no order gives events: the bytes are of another format, and are skipped.
+        if self.found_order.is_none() && orders.iter().any(|order| has_time(waiting, *order)) {
+            return Err(EventsKind::WhichByteOrder.into());
+        }
+        let order = self.found_order.unwrap_or(Evt21Order::Little);
+        self.decoder = Decoder::Evt21(Evt21Pixels::decoder(order));
+        self.words(waiting, items);
         Ok(())
     }
 
@@ -173,11 +234,10 @@ impl EventReader for Reader {
             if self.header.is_over {
                 self.begin()?;
                 let first = std::mem::take(&mut self.header.line);
-                self.words(&first, items);
+                self.take(&first, items)?;
             }
         }
-        self.words(rest, items);
-        Ok(())
+        self.take(rest, items)
     }
 
     fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
@@ -186,7 +246,10 @@ impl EventReader for Reader {
             let first = std::mem::take(&mut self.header.line);
             self.words(&first, items);
         }
-        Ok(())
+        match self.undecided.take() {
+            Some(waiting) => self.decide(&waiting, items),
+            None => Ok(()),
+        }
     }
 
     fn tally(&self) -> Tally {
@@ -194,6 +257,7 @@ impl EventReader for Reader {
             skipped: self.decoder.skipped().into(),
             is_cut: self.decoder.is_partial() || !self.header.line.is_empty(),
             far_rows: self.far_rows,
+            found_order: self.found_order,
             ..Tally::default()
         }
     }
@@ -201,6 +265,64 @@ impl EventReader for Reader {
     fn size(&self) -> Option<Size> {
         self.header.size.filter(|_| self.has_pixels)
     }
+}
+
+/// Number of bytes in a word of EVT 2.1.
+const WORD: usize = 8;
+
+/// Returns the words of EVT 2.1 in these bytes.
+fn words_of(bytes: &[u8], order: Evt21Order) -> impl Iterator<Item = u64> {
+    let (words, _) = bytes.as_chunks::<WORD>();
+    words.iter().map(move |bytes| match order {
+        Evt21Order::Little => u64::from_le_bytes(*bytes),
+        Evt21Order::Halves => u64::from_le_bytes(*bytes).rotate_left(32),
+    })
+}
+
+fn is_time(word: u64) -> bool {
+    word >> 60 == 8
+}
+
+fn has_time(bytes: &[u8], order: Evt21Order) -> bool {
+    words_of(bytes, order).any(is_time)
+}
+
+/// Finds the order of the bytes in words of EVT 2.1: the only one in which they can be words of a camera. If both can,
+/// as in a short stream, it is the only one in which the first word has the time, without which no event can be read.
+fn order_of(bytes: &[u8], size: Option<Size>) -> Option<Evt21Order> {
+    let can_be = |order: &Evt21Order| are_words(words_of(bytes, *order), size);
+    let begins = |order: &Evt21Order| words_of(bytes, *order).next().is_some_and(is_time);
+    let orders: Vec<Evt21Order> =
+        [Evt21Order::Little, Evt21Order::Halves].into_iter().filter(can_be).collect();
+    let mut first = orders.iter().copied().filter(begins);
+    match (&orders[..], first.next(), first.next()) {
+        (&[order], ..) | (_, Some(order), None) => Some(order),
+        _ => None,
+    }
+}
+
+/// Returns whether a camera can send these words: all are of known types, the times do not go back, and each event has a
+/// column that is a multiple of 32, a pixel at least, and a place within the picture.
+fn are_words(words: impl Iterator<Item = u64>, size: Option<Size>) -> bool {
+    let size = size.unwrap_or(Size { width: 1 << 11, height: 1 << 11 });
+    let mut latest = None;
+    for word in words {
+        let upper = word >> 32;
+        match upper >> 28 {
+            8 if latest.is_none_or(|latest| latest <= upper) => latest = Some(upper),
+            0 | 1 => {
+                let (x, y) = (upper >> 11 & 0x7FF, upper & 0x7FF);
+                let is_inside = x < u64::from(size.width) && y < u64::from(size.height);
+                if !is_inside || x % 32 > 0 || word as u32 == 0 {
+                    return false;
+                }
+            }
+            // Triggers, and words of other kinds that go on over several.
+            0xA | 0xE | 0xF => {}
+            _ => return false,
+        }
+    }
+    latest.is_some()
 }
 
 /// The lines before the words, each of which begins with `%`, up to `% end` or up to the first line that does not.

@@ -3,6 +3,7 @@
 use super::EventsKind;
 use catalogue::run::{Spell, Worded, quoted};
 use spikewire::link::Withheld;
+use spikewire_cameras::format::Evt21Order;
 use std::fmt;
 
 /// Counts of everything in a stream that is not an event, kept by the stream's reader.
@@ -16,6 +17,8 @@ pub struct Tally {
     pub long_ticks: u64,
     /// Number of events in rows of a camera from 32 on, in a stream whose pixels stand for addresses.
     pub far_rows: u64,
+    /// The order of the bytes in a word of EVT 2.1, if the stream does not say it and its words showed it.
+    pub found_order: Option<Evt21Order>,
     /// Counts kept by the reader of link frames; `None` for other formats.
     pub link: Option<LinkTally>,
 }
@@ -143,6 +146,17 @@ impl Worded for Tally {
         if self.far_rows > 0 {
             EventsKind::FarRows { events: self.far_rows }.word_about(f, spell, None)?;
             writeln!(f)?;
+        }
+        if let Some(order) = self.found_order {
+            let (name, other) = match order {
+                Evt21Order::Little => ("little", 1),
+                Evt21Order::Halves => ("legacy", 0),
+            };
+            writeln!(
+                f,
+                "the header does not say the order of the bytes, and by the words it is `{name}`; \
+                 `evt21,legacy={other}` reads the other one"
+            )?;
         }
         if self.is_cut {
             writeln!(f, "the end is cut within an event")?;

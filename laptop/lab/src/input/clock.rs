@@ -253,8 +253,8 @@ impl Clock {
         let step = self.usual_step / self.samples_a_step;
         let by_median = 1e6 / step;
         let is_coarse = (1e6 / through_length - step).abs() < self.resolution;
-        let is_even = (1.0 / EVEN..EVEN).contains(&(by_median / through_length));
-        (!is_even && !is_coarse).then_some(UnevenRate { through_length, by_median })
+        let is_other = is_other_rate(by_median, through_length);
+        (is_other && !is_coarse).then_some(UnevenRate { through_length, by_median })
     }
 
     /// Returns the sample rate in Hz, if it is known, for what must rely on it: a period that is written, or advice.
@@ -276,6 +276,11 @@ impl Clock {
     /// Returns the time between samples in µs at the [`rate`](Self::rate), or 0 if it is unknown.
     pub fn period(&self) -> i64 {
         self.rate().map_or(0, |rate| (1e6 / rate).round() as i64)
+    }
+
+    /// Returns the longest step in µs that is no gap, or NaN if no usual step is known.
+    pub(crate) fn longest_step(&self) -> f64 {
+        self.longest_step
     }
 
     /// Returns the number of gaps.
@@ -425,6 +430,14 @@ impl fmt::Display for Clock {
         if let Some(uneven) = self.uneven() {
             write!(f, "; the rate is uncertain: {uneven}")?;
         }
+        if let (Some(given), Some(measured)) = (self.given_rate, self.measured())
+            && is_other_rate(given, measured)
+        {
+            write!(
+                f,
+                "; the rate that is given, {given:.2} Hz, is not that of samples through length, {measured:.2} Hz"
+            )?;
+        }
         if self.jumps.count > 0 {
             write!(f, "; the rate jumps {} times{}", self.jumps.count, self.jumps)?;
         }
@@ -443,6 +456,11 @@ impl fmt::Display for Clock {
         }
         Ok(())
     }
+}
+
+/// Returns whether two rates differ by a fifth or more.
+pub(crate) fn is_other_rate(rate: f64, other: f64) -> bool {
+    !(1.0 / EVEN..EVEN).contains(&(rate / other))
 }
 
 /// A burst of samples whose times follow each other more closely than the samples were taken.
@@ -488,7 +506,7 @@ pub(super) fn prefers_stamps(stamps: &[i64], arrivals: &[i64]) -> bool {
 /// within a fifth.
 fn burst(times: &[i64], usual: f64) -> Option<Burst> {
     let mean = mean_step(times)?;
-    if mean <= 0.0 || (1.0 / EVEN..EVEN).contains(&(mean / usual)) || usual.is_nan() {
+    if mean <= 0.0 || !is_other_rate(mean, usual) || usual.is_nan() {
         return None;
     }
     let mut steps: Vec<i64> =

@@ -5,6 +5,7 @@ mod overview;
 pub use overview::{ColumnSummary, Summary, summary};
 
 use super::cut::WholeLines;
+use super::flysight::{self, Records};
 use super::header::{Header, Start, is_data, units};
 use super::spaces::OneBlank;
 use super::text::{decode, name, shown, unpacked};
@@ -12,12 +13,12 @@ use super::time::{Named, Reading, TimeUnit, implausible, odd_rate};
 use super::time::{microseconds, number, of_given, of_name};
 use super::{ALL, CHUNK, Chunk, InputOptions, Source, TableKind, near};
 use crate::error::At;
-use crate::{Error, Place, Result, Spot};
+use crate::{Error, ErrorKind, Place, Result, Spot};
 use catalogue::run::{Given, Words};
 use csv::{ByteRecord, Reader, ReaderBuilder};
 use std::cell::Cell;
 use std::collections::VecDeque;
-use std::io::{self, BufReader, Cursor, Read};
+use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::rc::Rc;
 
 /// Names of columns that may hold counts rather than samples. A column with such a name that counts upwards is read
@@ -88,11 +89,18 @@ impl Table {
             Ok(rows) => return Self::of_rows(rows, file, options),
             Err(text) => text,
         };
-        let text = decode(&head, input, file)?;
+        let mut text = BufReader::new(decode(&head, input, file)?);
+        if flysight::is_start(text.fill_buf().at(|| file)?) {
+            let (records, note) = Records::new(text, options.topic.as_deref(), file)?;
+            let mut table = Self::of_text(Box::new(records), 0, cut, file, options)?;
+            table.notes.insert(0, note);
+            return Ok(table);
+        }
+        options.refuse_topic()?;
         let text: Box<dyn Read> = if options.accept_cut {
             Box::new(WholeLines::new(text, Rc::clone(&cut)))
         } else {
-            text
+            Box::new(text)
         };
         Self::of_text(text, 0, cut, file, options)
     }
@@ -104,6 +112,7 @@ impl Table {
     /// See [`open`](Self::open).
     #[cfg(not(target_family = "wasm"))]
     pub(super) fn of_rows(rows: Box<dyn Read>, file: &str, options: &InputOptions) -> Result<Self> {
+        options.refuse_topic()?;
         Self::of_text(rows, 1, Rc::default(), file, options)
     }
 
@@ -135,14 +144,18 @@ impl Table {
             notes
                 .push(format!("the header is line {line}; the lines above it are left out").into());
         }
-        let is_header_given = start.is_header_given;
+        let given_line = start.given_line;
+        let doubtful = start.doubtful_comment(asked);
         let comments = Rc::default();
         let mut rows = Rows::new(start, input, delimiter, above, &comments);
+        rows.is_header_given = given_line.is_some();
+        rows.leaves_out = options.skip_non_finite;
         let mut ahead = ahead(&mut rows, file)?;
         let Some(first) = ahead.front() else {
             return Err(TableKind::Empty.at(file));
         };
-        let is_data = above == 0 && !is_header_given && is_data(&ahead, delimiter);
+        let is_data = above == 0 && given_line.is_none() && is_data(&ahead, delimiter);
+        let doubtful = doubtful.filter(|_| is_data && comment.is_none());
         let mut header = Vec::new();
         let names = match comment {
             Some(Header { names, .. }) if is_data => {
@@ -156,6 +169,11 @@ impl Table {
                     1 => format!("{what} 1").into(),
                     _ => format!("{what} 1 to {last}").into(),
                 });
+                notes.extend(doubtful.map(|line| {
+                    let note =
+                        format!("the comment in line {line} may hold other names than {last}; ");
+                    Words::from(note).setting("header").text(format_args!(" {line} takes them"))
+                }));
                 (1..=last).map(|number| number.to_string()).collect()
             }
             _ => {
@@ -167,6 +185,22 @@ impl Table {
                     && !bare.is_empty()
                 {
                     *first = bare.to_owned();
+                }
+                if let (Some(line), Some(columns)) = (given_line, rows.columns)
+                    && names.len() != columns
+                {
+                    let count = names.len();
+                    let rest = if count > columns {
+                        format!("the first {columns} are taken")
+                    } else {
+                        format!("the columns behind them are called by their number")
+                    };
+                    notes.push(
+                        format!("line {line} has {count} names for {columns} columns; {rest}")
+                            .into(),
+                    );
+                    names.truncate(columns);
+                    names.extend((count + 1..=columns).map(|number| number.to_string()));
                 }
                 names
             }
@@ -203,7 +237,7 @@ impl Table {
             origin: Vec::new(),
             notes,
         };
-        table.choose(&names, &of_units, options)?;
+        table.choose(&names, &of_units, options).map_err(|error| with_comment(error, doubtful))?;
         Ok(table)
     }
 
@@ -448,6 +482,7 @@ impl Table {
             self.notes.push(format!("{comments} lines {what}").into());
         }
         if !is_there {
+            self.notes.extend(std::mem::take(&mut self.rows.left_out).note());
             self.notes.extend(self.cut.take().map(Words::from));
         }
         Ok(is_there)
@@ -565,8 +600,35 @@ struct Rows {
     is_of_windows: bool,
     /// Number of lines that were added at the start of the text, such as a header. The file itself has no such lines.
     above: u64,
-    /// Number of fields of the first row, which all rows must have.
+    /// Number of fields of the first row, which all rows must have. If the user named the header, that of the row below
+    /// it.
     columns: Option<usize>,
+    /// Whether the first row is a header that the user named.
+    is_header_given: bool,
+    /// Number of the line of the first row.
+    first_line: u64,
+    /// Number of rows that were read.
+    count: u64,
+    /// Whether rows with another number of fields are left out.
+    leaves_out: bool,
+    left_out: LeftOut,
+}
+
+/// The rows that were left out, as they have another number of fields than the header.
+#[derive(Clone, Copy, Debug, Default)]
+struct LeftOut {
+    count: u64,
+    /// Line of the first one.
+    first: u64,
+}
+
+impl LeftOut {
+    fn note(self) -> Option<Words> {
+        let Self { count, first } = self;
+        let what =
+            "have another number of columns than the header and are left out, the first in line";
+        (count > 0).then(|| format!("{count} lines {what} {first}").into())
+    }
 }
 
 impl Rows {
@@ -595,26 +657,58 @@ impl Rows {
             .flexible(true)
             .delimiter(delimiter)
             .from_reader(all);
-        Self { reader, is_of_windows, above, columns: None }
+        Self {
+            reader,
+            is_of_windows,
+            above,
+            columns: None,
+            is_header_given: false,
+            first_line: 0,
+            count: 0,
+            leaves_out: false,
+            left_out: LeftOut::default(),
+        }
     }
 
     /// Reads the next row; returns false at the end of the table. A row may end in more delimiters than the first one,
     /// with nothing behind them, as some loggers write.
     fn next(&mut self, record: &mut ByteRecord, file: &str) -> Result<bool> {
-        let read = self.reader.read_byte_record(record);
-        if !read.map_err(|error| TableKind::Unreadable { error }.at(file))? {
-            return Ok(false);
-        }
-        let expected = *self.columns.get_or_insert(record.len());
-        let columns = record.len();
-        let is_longer = columns > expected;
-        if is_longer && record.iter().skip(expected).all(|field| field.trim_ascii().is_empty()) {
-            record.truncate(expected);
-        } else if columns != expected {
+        loop {
+            let read = self.reader.read_byte_record(record);
+            if !read.map_err(|error| TableKind::Unreadable { error }.at(file))? {
+                return Ok(false);
+            }
+            self.count += 1;
+            if self.count == 1 {
+                self.first_line = self.line(record);
+                if self.is_header_given {
+                    return Ok(true);
+                }
+            }
+            let expected = *self.columns.get_or_insert(record.len());
+            let columns = record.len();
+            if columns == expected {
+                return Ok(true);
+            }
+            let mut rest = record.iter().skip(expected);
+            if columns > expected && rest.all(|field| field.trim_ascii().is_empty()) {
+                record.truncate(expected);
+                return Ok(true);
+            }
             let (line, columns, expected) = (self.line(record), columns as u64, expected as u64);
-            return Err(TableKind::Uneven { line, columns, expected }.at(file));
+            // That the first row of all differs from the header is no fault of a row.
+            if self.count == 2 && !self.is_header_given {
+                let header = self.first_line;
+                return Err(TableKind::OtherHeader { line, columns, expected, header }.at(file));
+            }
+            if !self.leaves_out {
+                return Err(TableKind::Uneven { line, columns, expected }.at(file));
+            }
+            if self.left_out.count == 0 {
+                self.left_out.first = line;
+            }
+            self.left_out.count += 1;
         }
-        Ok(true)
     }
 
     /// Returns the number of the line at which the row in `record` begins. This row must be the row that was read last.
@@ -716,7 +810,7 @@ fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {
         }
         Err(_) => {
             let near = near(asked, names.iter().map(String::as_str));
-            Err(TableKind::NoColumn { name: asked.to_owned(), near }.at(file))
+            Err(TableKind::NoColumn { name: asked.to_owned(), near, comment: None }.at(file))
         }
     }
 }
@@ -739,6 +833,16 @@ fn is_stamp(name: &str) -> bool {
     const STAMPS: [&str; 4] = ["header.stamp", "timestamp_sample", "time_usec", "timeus"];
     let name = name.to_lowercase();
     STAMPS.iter().any(|stamp| name.contains(stamp))
+}
+
+/// Adds to the error of a missing column that the comment in a line may hold its name.
+fn with_comment(mut error: Error, line: Option<u64>) -> Error {
+    if let (ErrorKind::Table(TableKind::NoColumn { comment, .. }), Some(_)) =
+        (&mut *error.kind, line)
+    {
+        *comment = line;
+    }
+    error
 }
 
 /// Lists the first 20 names and the number of further names, because a table may have a million columns.

@@ -3,7 +3,7 @@
 
 use super::csv::is_missing;
 use super::text::name;
-use super::time::number;
+use super::time::{Named, number, of_name};
 use csv::{ByteRecord, ReaderBuilder};
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};
@@ -21,8 +21,8 @@ pub(super) struct Start {
     separator: Option<u8>,
     /// Number of the header's line, counted from 1, if other lines than comments stand above it.
     pub header_line: Option<u64>,
-    /// Whether the user named the line of the header.
-    pub is_header_given: bool,
+    /// The line of the header that the user named.
+    pub given_line: Option<u64>,
 }
 
 /// The names of a table's columns, and the delimiter between them.
@@ -82,7 +82,7 @@ impl Start {
         let marks = start.text[start.line..].iter_mut().take_while(|byte| b"#/ ".contains(byte));
         marks.for_each(|byte| *byte = b' ');
         start.next = start.text.len();
-        start.is_header_given = true;
+        start.given_line = Some(number);
         input.by_ref().take(LONGEST).read_until(b'\n', &mut start.text)?;
         bare_comment(&mut start.text[start.next..]);
         Ok(start)
@@ -90,7 +90,7 @@ impl Start {
 
     fn empty() -> Self {
         let (text, line, next) = (Vec::new(), 0, 0);
-        Self { text, line, next, separator: None, header_line: None, is_header_given: false }
+        Self { text, line, next, separator: None, header_line: None, given_line: None }
     }
 
     /// Reads comments and empty lines, the first line after them, and one more line.
@@ -204,21 +204,90 @@ impl Start {
     /// line below the comments. Returns `None` if there is no such comment, or if the line below contains no number.
     /// `asked` is the delimiter, if the user gave one.
     pub(super) fn comment(&self, asked: Option<u8>) -> Option<Header> {
-        if self.is_header_given {
-            return None;
-        }
-        let (above, line) = (&self.text[..self.line], &self.text[self.line..self.next]);
-        let comments = above.split(|&byte| byte == b'\n').filter_map(|own| own.strip_prefix(b"#"));
-        comments.rev().find_map(|comment| {
-            let delimiter = asked
-                .or_else(|| delimiter(comment))
-                .unwrap_or_else(|| if is_aligned(comment, line) { b' ' } else { b',' });
-            let (names, row) = (split(comment, delimiter), split(line, delimiter));
-            let has_number = |row: &ByteRecord| row.iter().any(|own| is_number(own, delimiter));
-            let is_header = names.len() == row.len() && has_number(&row) && !has_number(&names);
-            is_header.then(|| Header { names: names.iter().map(name).collect(), delimiter })
-        })
+        let line = &self.text[self.line..self.next];
+        self.comments_above().into_iter().rev().find_map(|(_, comment)| names(comment, line, asked))
     }
+
+    /// Returns the number of the last comment above the rows that seems to hold names, though not as many as there are
+    /// columns: one of them is a name of times.
+    pub(super) fn doubtful_comment(&self, asked: Option<u8>) -> Option<u64> {
+        let mut comments = self.comments_above().into_iter().rev();
+        let (number, _) = comments.find(|(_, comment)| {
+            let delimiter = asked.or_else(|| delimiter(comment)).unwrap_or(b' ');
+            let names = split(comment, delimiter);
+            names.len() > 1
+                && names.iter().any(is_time)
+                && !names.iter().any(|own| is_number(own, delimiter))
+        })?;
+        Some(number)
+    }
+
+    /// Returns the comments above the first row, each with the number of its line, from 1. There are none if the user
+    /// named the header.
+    fn comments_above(&self) -> Vec<(u64, &[u8])> {
+        let mut comments = Vec::new();
+        if self.given_line.is_none() {
+            for (number, line) in (1..).zip(self.text[..self.line].split(|&byte| byte == b'\n')) {
+                comments.extend(line.strip_prefix(b"#").map(|comment| (number, comment)));
+            }
+        }
+        comments
+    }
+}
+
+/// Returns the names in a comment above a row, if they are as many as the row has fields. Names that are separated
+/// otherwise than the row's fields are taken only behind a word such as `columns:`, or if one of them is a name of times:
+/// else three words of a sentence would be the names of three columns.
+fn names(comment: &[u8], line: &[u8], asked: Option<u8>) -> Option<Header> {
+    let (comment, is_labelled) = without_label(comment);
+    let usual = asked
+        .or_else(|| delimiter(comment))
+        .unwrap_or_else(|| if is_aligned(comment, line) { b' ' } else { b',' });
+    let of_row = asked.or_else(|| delimiter(line)).unwrap_or(b' ');
+    for delimiter in [usual, of_row] {
+        let row = split(line, delimiter);
+        let has_number = |row: &ByteRecord| row.iter().any(|own| is_number(own, delimiter));
+        if !has_number(&row) {
+            continue;
+        }
+        let candidates =
+            [(usual, split(comment, usual)), (b' ', with_units(&split(comment, b' ')))];
+        for (separator, names) in candidates {
+            let is_sure = is_labelled || separator == delimiter || names.iter().any(is_time);
+            if is_sure && names.len() == row.len() && !has_number(&names) {
+                return Some(Header { names: names.iter().map(name).collect(), delimiter });
+            }
+        }
+    }
+    None
+}
+
+/// Removes a word such as `columns:` before the names in a comment. Also returns whether there was one.
+fn without_label(comment: &[u8]) -> (&[u8], bool) {
+    const LABELS: [&str; 6] =
+        ["columns", "column names", "fields", "field names", "names", "header"];
+    let end = comment.iter().position(|byte| *byte == b':').unwrap_or(0);
+    let label = comment[..end].trim_ascii();
+    let is_label = LABELS.iter().any(|own| label.eq_ignore_ascii_case(own.as_bytes()));
+    (if is_label { &comment[end + 1..] } else { comment }, is_label)
+}
+
+/// Joins units in brackets to the names before them, as in `t (s) x (m)`.
+fn with_units(words: &ByteRecord) -> ByteRecord {
+    let mut names: Vec<Vec<u8>> = Vec::new();
+    for word in words {
+        let is_unit = matches!(word, [b'(', .., b')'] | [b'[', .., b']']);
+        match names.last_mut().filter(|_| is_unit) {
+            Some(name) => name.extend([b" ", word].concat()),
+            None => names.push(word.to_vec()),
+        }
+    }
+    names.into()
+}
+
+/// Returns whether a field of a header is a name of times.
+fn is_time(field: &[u8]) -> bool {
+    matches!(of_name(&name(field)), Some(Named::In(_) | Named::Whole(_)))
 }
 
 fn is_comment(line: &[u8]) -> bool {

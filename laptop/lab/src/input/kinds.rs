@@ -10,8 +10,15 @@ kinds! {
     pub enum TableKind by spell of subject {
         Empty => ("empty; a CSV table starts with a header"),
         NoSamples => ("no samples below the header"),
-        Uneven { line: u64, columns: u64, expected: u64 } =>
-            ("line {line} has {columns} columns where the header has {expected}"),
+        Uneven { line: u64, columns: u64, expected: u64 } => (
+            "line {line} has {columns} columns where the header has {expected}; {} leaves such lines out",
+            spell("skip_non_finite")
+        ),
+        OtherHeader { line: u64, columns: u64, expected: u64, header: u64 } => (
+            "line {line} has {columns} columns where the header has {expected}; {} {header} takes its names for the \
+             first columns, if they are those",
+            spell("header")
+        ),
         Unreadable { error: csv::Error } => ("{error}"),
         NotUnpacked { error: std::io::Error } => ("cannot be unpacked: {error}"),
         NoTable { what: &'static str } => ("{what}"),
@@ -26,7 +33,11 @@ kinds! {
             ("{value} is not finite; {} goes on over such values", spell("skip_non_finite")),
         NoneFinite { samples: usize } => ("none of the {samples} samples is finite"),
         // Columns.
-        NoColumn { name: String, near: String } => ("no column `{name}`; {near}"),
+        NoColumn { name: String, near: String, comment: Option<u64> } =>
+            ("no column `{name}`; {near}{}", match comment {
+                None => String::new(),
+                Some(line) => format!("; {} {line} takes the names of the comment there", spell("header")),
+            }),
         NoColumnNumber { number: String, columns: usize } =>
             ("no column {number}; columns are numbered from 1 to {columns}"),
         WhichColumn { columns: String } => ("{} must say which; there are {columns}", spell("column")),

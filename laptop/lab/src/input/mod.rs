@@ -3,6 +3,7 @@
 mod clock;
 mod csv;
 mod cut;
+mod flysight;
 mod header;
 mod kinds;
 pub mod messages;
@@ -15,6 +16,7 @@ mod text;
 mod time;
 mod times;
 
+pub(crate) use clock::is_other_rate;
 pub use clock::{Clock, Kind, Step, UnevenRate};
 pub use csv::{ColumnSummary, Summary, summary};
 pub use kinds::{LogKind, TableKind};
@@ -78,14 +80,16 @@ pub struct ChannelOptions {
     /// Number of the line with the names of a table's columns, counted from 1. The lines above it are left out. By
     /// default, the header is found where it is sure.
     pub header: Option<u64>,
-    /// Topic of a log. The suffix `:1` stands for the second instance of a sensor.
+    /// Topic of a log. The suffix `:1` stands for the second instance of a sensor. In a file of a `FlySight` 2, the
+    /// topic is the kind of its records, such as `IMU`.
     pub topic: Option<String>,
     /// Fields of the topic, such as `gyro_rad[0]` or `angular_velocity.x`.
     pub field: Vec<String>,
     /// Further fields of the topic, read after those in [`field`](Self::field).
     pub fields: Vec<String>,
     /// Samples a second. They stand in place of the rate that the times show, and are needed where there are no times
-    /// or where the times contradict themselves (see [`Clock::uneven`]).
+    /// or where the times contradict themselves (see [`Clock::uneven`]). Of many recordings, each has this rate; a note
+    /// says where the times show another one.
     pub rate: Option<f64>,
     /// Limit on the step between the times of consecutive samples, as a multiple of the usual step. A longer step
     /// counts as a gap.
@@ -268,11 +272,7 @@ impl InputOptions {
 
     /// Opens the recording as a CSV table.
     fn open_table(&self) -> Result<csv::Table> {
-        let of_logs = [
-            ("topic", self.topic.is_some()),
-            ("field", !self.field.is_empty()),
-            ("fields", !self.fields.is_empty()),
-        ];
+        let of_logs = [("field", !self.field.is_empty()), ("fields", !self.fields.is_empty())];
         let name = self.name();
         if self.is_stdin() {
             self.refuse(&of_logs, "a CSV table")?;
@@ -367,6 +367,11 @@ impl InputOptions {
                 Err(TableKind::OneChannel { command, channels }.into())
             }
         }
+    }
+
+    /// Returns an error if a topic is chosen, which a table does not have.
+    fn refuse_topic(&self) -> Result<()> {
+        self.refuse(&[("topic", self.topic.is_some())], "a CSV table")
     }
 
     fn refuse(&self, options: &[(&'static str, bool)], what: &'static str) -> Result<()> {

@@ -110,7 +110,15 @@ kinds! {
         ArrayType { name: String, datatype: String } =>
             ("`{name}` holds numbers of a type that is not taken: {datatype}"),
         Unread { name: String, cause: Hdf5Error } => ("`{name}` cannot be read: {cause}"),
-        NotFinite { name: String, number: f64 } => ("`{name}` holds {number}"),
+        NotFinite { name: String, number: f64 } => ("`{name}` holds {number}{}", {
+            let keeps_all = name.starts_with("tau") && number.is_infinite();
+            if keeps_all {
+                ", as snnTorch exports beta=1, a neuron that keeps all of its potential: export it as IF, or with a \
+                 beta below 1"
+            } else {
+                ""
+            }
+        }),
     }
 }
 room!(NirKind, Nir);

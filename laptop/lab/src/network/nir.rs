@@ -8,7 +8,7 @@ use crate::network::fault::{Context, LayerKind, NirKind, Result, ensure};
 use crate::{Place, Spot};
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;
-use hdf5_reader::{Dataset, H5Type, Hdf5File, OpenOptions};
+use hdf5_reader::{ByteOrder, Dataset, H5Type, Hdf5File, OpenOptions};
 use std::collections::BTreeMap;
 
 /// Maximum size of an array in a file, in bytes. The limit prevents huge allocations for damaged files; 256 neurons
@@ -409,6 +409,7 @@ fn numbers(node: &Group, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
     let dataset = node.dataset(name).map_err(|_| NirKind::NoArray { name: name.to_owned() })?;
     let shape = dataset.shape().iter().map(|&length| length as usize).collect();
     let numbers = match *dataset.dtype() {
+        Datatype::FloatingPoint { size: 2, .. } => read_as(&dataset, |Half(n)| n),
         Datatype::FloatingPoint { size: 4, .. } => read_as(&dataset, |n: f32| n.into()),
         Datatype::FloatingPoint { size: 8, .. } => read_as(&dataset, |n: f64| n),
         Datatype::FixedPoint { size: 4, signed: true, .. } => read_as(&dataset, |n: i32| n.into()),
@@ -429,8 +430,70 @@ fn read_as<T: H5Type + Copy>(
     Ok(dataset.read_array::<T>()?.iter().map(|&number| to_f64(number)).collect())
 }
 
+/// A number of half precision, which Rust has no type for.
+#[derive(Clone, Copy)]
+struct Half(f64);
+
+impl Half {
+    fn from_bits(bits: u16) -> Self {
+        let (exponent, fraction) = (i32::from(bits >> 10 & 0x1F), f64::from(bits & 0x3FF));
+        let size = match exponent {
+            0 => fraction * 2_f64.powi(-24),
+            0x1F if fraction > 0.0 => f64::NAN,
+            0x1F => f64::INFINITY,
+            _ => (1024.0 + fraction) * 2_f64.powi(exponent - 25),
+        };
+        Self(if bits >> 15 == 1 { -size } else { size })
+    }
+}
+
+impl H5Type for Half {
+    fn hdf5_type() -> Datatype {
+        Datatype::FloatingPoint { size: 2, byte_order: ByteOrder::LittleEndian }
+    }
+
+    fn from_bytes(bytes: &[u8], datatype: &Datatype) -> hdf5_reader::error::Result<Self> {
+        let (&[first, second], Datatype::FloatingPoint { size: 2, byte_order }) = (bytes, datatype)
+        else {
+            let expected = "half precision".to_owned();
+            let actual = format!("{datatype:?}");
+            return Err(hdf5_reader::error::Error::TypeMismatch { expected, actual });
+        };
+        Ok(Self::from_bits(match byte_order {
+            ByteOrder::LittleEndian => u16::from_le_bytes([first, second]),
+            ByteOrder::BigEndian => u16::from_be_bytes([first, second]),
+        }))
+    }
+
+    fn element_size(_: &Datatype) -> usize {
+        2
+    }
+}
+
 impl Neurons {
     pub(super) fn name(&self) -> String {
         format!("node `{}`", self.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Half;
+
+    #[test]
+    fn half_precision_is_exact() {
+        for (bits, number) in [
+            (0x3C00, 1.0),
+            (0xC000, -2.0),
+            (0x3555, 0.333_251_953_125),
+            (0x7BFF, 65_504.0),
+            (0x0001, 2_f64.powi(-24)),
+            (0x83FF, -1023.0 * 2_f64.powi(-24)),
+            (0x0400, 2_f64.powi(-14)),
+            (0xFC00, f64::NEG_INFINITY),
+        ] {
+            assert_eq!(Half::from_bits(bits).0, number, "{bits:#x}");
+        }
+        assert!(Half::from_bits(0x7E00).0.is_nan());
     }
 }

@@ -8,7 +8,7 @@ use crate::measure::Measure;
 use crate::passes::{First, Piece, each, pass};
 use crate::scheme::Scheme;
 use crate::trial::{Recording, Trial};
-use crate::unit::known_unit;
+use crate::unit::unit_of_name;
 use catalogue::run::{Asked, Event, SampleType, Settings, Shape, Words};
 use spikewire::Polarity;
 use std::collections::HashSet;
@@ -134,7 +134,7 @@ pub fn read(
         notes.push((*scheme, told));
     }
     let segments = spans.segments.iter().filter(|own| own.samples > 0).count();
-    let unit = known_unit(&passed.channel).map(str::to_owned);
+    let unit = unit_of_name(&passed.channel).map(str::to_owned);
     let name = passed.channel;
     let picture = Picture { unit, name, axis, segments, signal, panels, is_grid };
     Ok(Read { picture, samples, notes: passed.notes, schemes: notes })

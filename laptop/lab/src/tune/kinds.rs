@@ -18,7 +18,7 @@ kinds! {
              more in a period of its bandwidth"
         ),
         NotFlown { most: f64 } => ("{subject} must be 0 to {most} percent: more was not flown"),
-        NoPeriod => ("{subject} has no period of 1 µs to 65 535 µs, which a frame of the link can tell"),
+        NoPeriod => ("{subject} has no period of 1 µs to 16 777 215 µs, which a frame of the link can tell"),
         OneAChannel { values: usize, channels: usize } =>
             ("{subject} has {values} values for {channels} channels: it takes one for all or one for each"),
         SeveralUnits { one: String, other: String } =>

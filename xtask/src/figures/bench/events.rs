@@ -42,9 +42,6 @@ struct Printed {
     bytes: u32,
 }
 
-/// Sample type for each of the tables' cores.
-const SAMPLES: [&str; 2] = ["f32", "q16.16"];
-
 /// Sample rate of the six channels in Hz; the core and clock for which bounds are promised follow, and for two sample types
 /// the share of the core that stays below.
 const RATE: f64 = 8_000.0;
@@ -81,6 +78,11 @@ impl Event {
     fn bytes(&self) -> String {
         self.bytes_mean.map_or("–".into(), |bytes| format!("{bytes:.2}"))
     }
+
+    /// Formats two cells: the mean cycles, and the instructions of the most expensive one.
+    fn cycles_and_worst(&self) -> String {
+        format!("{} | {}", figures::cell(self.cycles_mean), self.instructions_max)
+    }
 }
 
 /// Formats all figures as text.
@@ -112,83 +114,93 @@ pub fn text(events: &[Event]) -> String {
 
 /// Formats the tables of docs/costs.md.
 pub fn markdown(events: &[Event]) -> Result<String> {
-    let tables = [each_event(events), frames(events), banks(events)?, six_channels(events)?];
+    let tables = [each_event(events), frames(events), six_channels(events)?];
     Ok(format!("\n{}\n", tables.join("\n")))
 }
 
-/// Formats a line for each subject, with both directions and both cores.
+/// Formats a line for each subject: the cycles of both directions on the first core, and the worst instructions.
 fn each_event(events: &[Event]) -> String {
-    let [first, second] = figures::CORES;
+    let [core, _] = figures::CORES;
     let mut text = format!(
-        "| an event | bytes | {first} write | cycles | worst | read | cycles | worst | {second} write | cycles | worst | read | cycles | worst |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+        "| an event, {core} | bytes | write, cycles | worst | read, cycles | worst |\n\
+         |---|---:|---:|---:|---:|---:|\n"
     );
     for (subject, name) in NAMES {
-        let of = |core, directions: &[&str]| {
-            events.iter().find(|event| {
-                (event.core, event.subject.as_str()) == (core, subject)
-                    && directions.contains(&event.direction.as_str())
-            })
-        };
-        let cell = |event: Option<&Event>| match event {
-            Some(Event { instructions_mean, instructions_max, cycles_mean, .. }) => {
-                let cycles = figures::cell(*cycles_mean);
-                format!("{instructions_mean:.1} | {cycles} | {instructions_max}")
-            }
-            None => "– | – | –".into(),
-        };
-        let Some(write) = of(first, &["encode", "push"]) else { continue };
-        let cells = figures::CORES.map(|core| {
-            let [write, read] = [of(core, &["encode", "push"]), of(core, &["decode", "pop"])];
-            format!("{} | {}", cell(write), cell(read))
-        });
-        text += &format!("| {name} | {} | {} |\n", write.bytes(), cells.join(" | "));
+        let Some(write) = direction_of(events, core, subject, ["encode", "push"]) else { continue };
+        let read = direction_of(events, core, subject, ["decode", "pop"]);
+        let (bytes, write) = (write.bytes(), write.cycles_and_worst());
+        let read = read.map_or("– | –".into(), Event::cycles_and_worst);
+        text += &format!("| {name} | {bytes} | {write} | {read} |\n");
     }
     text
 }
 
-/// Names of the subjects in the tables.
-const NAMES: [(&str, &str); 19] = [
+/// Returns the event of a subject whose direction has one of two names.
+fn direction_of<'a>(
+    events: &'a [Event],
+    core: &str,
+    subject: &str,
+    names: [&str; 2],
+) -> Option<&'a Event> {
+    events.iter().find(|event| {
+        (event.core, event.subject.as_str()) == (core, subject)
+            && names.contains(&event.direction.as_str())
+    })
+}
+
+/// Formats every figure on both cores as CSV.
+pub fn csv(events: &[Event]) -> String {
+    let mut text = String::from(
+        "core,subject,direction,per,sample,bytes,instructions,cycles_least,cycles_most,worst_instructions\n",
+    );
+    for event in events.iter().filter(|event| figures::CORES.contains(&event.core)) {
+        let cells = [
+            event.core,
+            &event.subject,
+            &event.direction,
+            &event.per,
+            event.sample.as_deref().unwrap_or_default(),
+            &event.bytes_mean.map(|bytes| format!("{bytes:.2}")).unwrap_or_default(),
+            &figures::decimal(Some(event.instructions_mean)),
+            &figures::bounds(event.cycles_mean),
+            &event.instructions_max.to_string(),
+        ];
+        text += &format!("{}\n", cells.join(","));
+    }
+    text
+}
+
+/// The subjects on the page, with their names there.
+const NAMES: [(&str, &str); 12] = [
     ("queue", "queue: push, pop"),
     ("queue-lock-free", "queue, lock-free: push, pop"),
     ("raw", "raw: tick, address, sign"),
     ("link-full", "link, full frames"),
     ("link-100ms", "link, a frame every 100 ms"),
-    ("edvs-e0", "eDVS E0, without time"),
     ("edvs-e1", "eDVS E1"),
-    ("edvs-e2", "eDVS E2"),
-    ("edvs-e3", "eDVS E3"),
-    ("edvs-e4", "eDVS E4"),
     ("event-stream", "Event Stream"),
     ("evt2", "EVT2"),
     ("eieio", "EIEIO, a datagram a sample"),
-    ("tinyodin-word", "tinyODIN, the word of 10 bits"),
     ("tinyodin", "tinyODIN, word and handshake"),
-    ("odin-word", "ODIN, the word of 17 bits"),
-    ("akd1500-convolution", "AKD1500, convolutional layer"),
     ("akd1500-dense", "AKD1500, dense layer"),
     ("xylo", "Xylo, counts of 10 ms"),
 ];
 
-/// Formats the costs of a pixel in a camera's row, on both cores.
+/// Formats the costs of a pixel in a camera's row, on the first core.
 fn frames(events: &[Event]) -> String {
-    let [first, second] = figures::CORES;
+    let [core, _] = figures::CORES;
     let mut text = format!(
-        "| a pixel of a camera's row | RAM, bytes | {first}: nothing changes | an edge passes | all change | {second}: nothing changes | an edge passes | all change |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|\n"
+        "| a pixel, {core} | RAM, bytes | nothing changes | an edge passes | all change |\n|---|---:|---:|---:|---:|\n"
     );
     for (subject, name, bytes) in PIXELS {
         text += &format!("| {name} | {bytes} |");
-        for core in figures::CORES {
-            for scene in ["rest", "edge", "all"] {
-                let mean = events.iter().find(|event| {
-                    (event.core, event.subject.as_str(), event.direction.as_str())
-                        == (core, subject, scene)
-                });
-                let mean =
-                    mean.map_or("–".into(), |event| format!("{:.1}", event.instructions_mean));
-                text += &format!(" {mean} |");
-            }
+        for scene in ["rest", "edge", "all"] {
+            let mean = events.iter().find(|event| {
+                (event.core, event.subject.as_str(), event.direction.as_str())
+                    == (core, subject, scene)
+            });
+            let mean = mean.map_or("–".into(), |event| format!("{:.1}", event.instructions_mean));
+            text += &format!(" {mean} |");
         }
         text += "\n";
     }
@@ -203,45 +215,21 @@ const PIXELS: [(&str, &str, u32); 4] = [
     ("frame-refractory", "`Refractory<Intensity>`, 1 frame", 2),
 ];
 
-/// Formats the costs of six samples into a bank, on both cores.
-fn banks(events: &[Event]) -> Result<String> {
-    let mut text = String::from(
-        "| the bank alone | SF | cycles | worst | HSA, 15 taps | cycles | worst | T-HSA, 15 taps | cycles | worst |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
-    );
-    for (core, sample) in figures::CORES.into_iter().zip(SAMPLES) {
-        text += &format!("| {core}, `{sample}` |");
-        for bank in ["bank-sf-6", "bank-hsa-6", "bank-t-hsa-6"] {
-            let bank = find(events, core, bank, "encode", sample)?;
-            let (mean, worst) = (bank.instructions_mean, bank.instructions_max);
-            text += &format!(" {mean:.1} | {} | {worst} |", figures::cell(bank.cycles_mean));
-        }
-        text += "\n";
-    }
-    Ok(text)
-}
-
 /// Formats the costs from six samples to frames, at both rates and on both cores.
 fn six_channels(events: &[Event]) -> Result<String> {
     let mut text = String::from(
-        "| queue and frames | interrupt: bank, queue | cycles | worst | main: frames | cycles | all | cycles | worst 100 ms |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        "| six samples to frames | interrupt, cycles | worst | interrupt and main, cycles |\n|---|---:|---:|---:|\n",
     );
     let [first, second] = figures::CORES;
-    for (core, sample) in [(first, "f32"), (first, "i16"), (second, "q16.16"), (second, "i16")] {
+    for (core, sample) in [(first, "f32"), (first, "i16"), (second, "q16.16")] {
         for (path, code) in PATHS {
-            let of = |direction| find(events, core, path, direction, sample);
-            let (interrupt, main, all) = (of("interrupt")?, of("main")?, of("all")?);
+            let interrupt = find(events, core, path, "interrupt", sample)?;
+            let all = find(events, core, path, "all", sample)?;
             text += &format!(
-                "| {core}, `{sample}`, {code} | {:.1} | {} | {} | {:.1} | {} | {:.1} | {} | {} |\n",
-                interrupt.instructions_mean,
+                "| {core}, `{sample}`, {code} | {} | {} | {} |\n",
                 figures::cell(interrupt.cycles_mean),
                 interrupt.instructions_max,
-                main.instructions_mean,
-                figures::cell(main.cycles_mean),
-                all.instructions_mean,
                 figures::cell(all.cycles_mean),
-                all.instructions_max,
             );
         }
     }
@@ -255,24 +243,23 @@ const PATHS: [(&str, &str); 3] = [
     ("path-200hz", "SF, 200 Hz"),
 ];
 
-/// Describes in a sentence how much of the core six channels take.
+/// Describes in a few sentences how much of the core six channels take.
 pub fn in_a_sentence(events: &[Event]) -> Result<String> {
     let [floats, counts] = SHARES.map(|(sample, _)| {
         let (set, [least, most]) = set(events, sample)?;
         let [low, high] = [least, most].map(|cycles| cycles * RATE / CLOCK * 100.0);
-        let cycles = figures::between([least, most]);
+        let (mean, cycles) = (set.instructions_mean, figures::between([least, most]));
         anyhow::Ok(format!(
-            "{:.1} instructions and {cycles} cycles a set in `{sample}`, {low:.2} to {high:.2} %",
-            set.instructions_mean,
+            "`{sample}` takes {mean:.1} instructions and {cycles} cycles, {low:.2} to {high:.2} %"
         ))
     });
     let (floats, counts) = (floats?, counts?);
     let slow = find(events, PROMISED, "path-200hz", "all", "f32")?;
     Ok(format!(
-        "Six channels of SF at 8 kHz, from samples to frames, are {floats} of a\n\
-         Cortex-M4F at 168 MHz, and {counts}: of a recorded flight with\n\
-         straight lines between its samples, where 8 sets in 100 have a spike. The samples as recorded, 200 a second and two spikes a\n\
-         set, are {:.1} instructions and {} cycles a set in `f32`.\n",
+        "Six channels of SF at 8 kHz, from samples to frames, on a Cortex-M4F at 168 MHz: a sample set in\n\
+         {floats}. {counts}.\n\
+         Both are measured on the recorded flight, linearly interpolated to 8 kHz; 8 % of the sample sets produce a spike.\n\
+         As recorded, at 200 Hz with two spikes a sample set, `f32` takes {:.1} instructions and {} cycles.\n",
         slow.instructions_mean,
         figures::cell(slow.cycles_mean),
     ))

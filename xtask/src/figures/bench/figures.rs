@@ -66,3 +66,18 @@ pub fn between_whole([least, most]: [u32; 2]) -> String {
 pub fn cell(cycles: Option<[f64; 2]>) -> String {
     cycles.map_or("–".into(), between)
 }
+
+/// Formats a figure of a CSV file to one decimal; nothing if there is none.
+pub fn decimal(figure: Option<f64>) -> String {
+    figure.map(|figure| format!("{figure:.1}")).unwrap_or_default()
+}
+
+/// Formats both bounds as two cells of a CSV file.
+pub fn bounds(cycles: Option<[f64; 2]>) -> String {
+    cycles.map_or(",".into(), |[least, most]| format!("{least:.1},{most:.1}"))
+}
+
+/// Formats both bounds in whole cycles as two cells of a CSV file.
+pub fn whole_bounds(cycles: Option<[u32; 2]>) -> String {
+    cycles.map_or(",".into(), |[least, most]| format!("{least},{most}"))
+}

@@ -86,25 +86,51 @@ pub fn unlisted(rows: &[Row], listed: &Shares) -> Vec<String> {
     found
 }
 
-/// Formats the exceptions, a line for those that have all but the codec's name in common.
+/// An exception by the parts of its name.
+struct Exception {
+    /// What the codec is compared with.
+    against: &'static str,
+    /// Core and form, or core and sample type.
+    place: String,
+    codec: String,
+    share: f64,
+}
+
+fn parsed(rows: &[Row]) -> impl Iterator<Item = Exception> + use<> {
+    exceptions(rows).into_iter().filter_map(|(key, share)| {
+        let (kind, rest) = key.split_once(' ')?;
+        let (place, codec) = rest.rsplit_once(' ')?;
+        let against = if kind == COUNTS.0 { "the quicker wide type" } else { "plain C" };
+        Some(Exception { against, place: place.to_owned(), codec: codec.to_owned(), share })
+    })
+}
+
+/// Formats the exceptions, a line for each core and what it is compared with: their number and the largest.
 pub fn markdown(rows: &[Row]) -> String {
-    let mut lines: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for (key, share) in exceptions(rows) {
-        let (of, codec) = key.rsplit_once(' ').unwrap_or_default();
-        lines.entry(of.to_owned()).or_default().push(format!("{codec} {share:.2}"));
+    let mut lines: BTreeMap<(&str, String), Vec<Exception>> = BTreeMap::new();
+    for exception in parsed(rows) {
+        let core = exception.place.split(' ').next().unwrap_or_default().to_owned();
+        lines.entry((exception.against, core)).or_default().push(exception);
     }
-    let mut text = String::from(
-        "\n| compared with, core, form | codecs, and how many times as much |\n|---|---|\n",
-    );
-    for (of, codecs) in lines {
-        let of = match of.split_once(' ') {
-            Some((kind, rest)) if kind == COUNTS.0 => format!("the quicker wide type, {rest}"),
-            Some((_, rest)) => format!("plain C, {rest}"),
-            None => of,
-        };
-        text += &format!("| {of} | {} |\n", codecs.join(", "));
+    let mut text =
+        String::from("\n| compared with, core | above the bound | the largest |\n|---|---:|---|\n");
+    for ((against, core), exceptions) in lines {
+        let count = exceptions.len();
+        // The first of equal ones.
+        let largest = exceptions.iter().rev().max_by(|a, b| a.share.total_cmp(&b.share));
+        let Some(Exception { place, codec, share, .. }) = largest else { continue };
+        text += &format!("| {against}, {core} | {count} | {codec}, {place}: {share:.2} times |\n");
     }
     text + "\n"
+}
+
+/// Formats the exceptions as CSV.
+pub fn csv(rows: &[Row]) -> String {
+    let mut text = String::from("compared_with,core_and_form,scheme,times\n");
+    for Exception { against, place, codec, share } in parsed(rows) {
+        text += &format!("{against},{place},{codec},{share:.2}\n");
+    }
+    text
 }
 
 #[cfg(test)]

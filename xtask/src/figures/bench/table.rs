@@ -3,20 +3,28 @@
 use super::stack::Stack;
 use super::{
     events,
-    figures::{CORES, ENERGY, Row, between_whole, cell},
+    figures::{CORES, ENERGY, Row, between_whole, bounds, cell, decimal, whole_bounds},
     measured::Measured,
     slower,
 };
+use crate::common::paths;
 use crate::figures::markdown;
 use crate::programs::{boards::Board, image};
-use anyhow::Result;
+use anyhow::{Context, Result};
+use std::fs;
 
 /// Place of the tables: the file, and the marker around them.
 const CODECS: (&str, &str) = ("docs/costs.md", "bench-target");
 const EVENTS: (&str, &str) = ("docs/costs.md", "bench-target events");
 const SLOWER: (&str, &str) = ("docs/costs.md", "bench-target slower");
+const STACK: (&str, &str) = ("docs/costs.md", "bench-target stack");
 const BRIEF: (&str, &str) = ("README.md", "bench-target brief");
-const SIX: (&str, &str) = ("README.md", "bench-target six channels");
+
+/// Files with every figure, of which the page shows a few.
+const CODECS_CSV: &str = "docs/costs.csv";
+const EVENTS_CSV: &str = "docs/costs-events.csv";
+const SLOWER_CSV: &str = "docs/costs-bounds.csv";
+const STACKS_CSV: &str = "docs/costs-stack.csv";
 
 /// Codecs of the short table, by the types that its rows name.
 const FEW: [(&str, &str); 5] = [
@@ -136,7 +144,6 @@ fn tables(Measured { rows, events, .. }: &Measured) -> Result<Vec<((&str, &str),
         tables.insert(0, (CODECS, codecs(rows)));
         tables.push((SLOWER, slower::markdown(rows)));
         tables.push((BRIEF, brief(rows, &markdown::section(BRIEF.0, BRIEF.1)?)));
-        tables.push((SIX, format!("\n{}\n", events::in_a_sentence(events)?)));
     }
     Ok(tables)
 }
@@ -158,46 +165,104 @@ fn brief(rows: &[Row], table: &str) -> String {
     table.lines().map(|row| anew(row).unwrap_or_else(|| row.to_owned()) + "\n").collect()
 }
 
-/// Formats the codecs: in `f32` for cores with a floating-point unit, in fixed point for cores without.
+/// The rows of the paper's signal on a core of the tables, in its sample type: `f32` for cores with a floating-point unit,
+/// fixed point for cores without.
+fn of_core<'a>(rows: &'a [Row], core: &'a str) -> impl Iterator<Item = Line<'a>> {
+    let sample = if core == CORES[0] { "f32" } else { "q16.16" };
+    lines(rows).filter(move |Line { encode, .. }| {
+        (encode.core, encode.sample.as_str(), encode.signal.as_str()) == (core, sample, "paper")
+    })
+}
+
+/// The codecs on the page.
+const SHOWN: [&str; 16] = [
+    "tbr",
+    "mw-5",
+    "sf",
+    "sod-4",
+    "asf",
+    "bsa-24",
+    "hsa-15",
+    "t-hsa-15",
+    "if",
+    "sigma-delta",
+    "position-20",
+    "grf-20",
+    "grf-slots-15x10",
+    "ttfs-16",
+    "weighted-phase-8",
+    "burst-5",
+];
+
+/// Formats the cycles of the usual codecs on both cores.
 fn codecs(rows: &[Row]) -> String {
-    let mut text = String::new();
-    for ((core, energy), sample) in ENERGY.into_iter().zip(["f32", "q16.16"]) {
+    let [first, second] = CORES;
+    let mut text = format!(
+        "\n| scheme | {first}: many a call | one a call | worst | decode | {second}: one a call | decode | RAM |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|\n"
+    );
+    let shown = |line: &Line<'_>| SHOWN.contains(&line.encode.codec.as_str());
+    for Line { encode, encode_sample, decode, .. } in of_core(rows, first).filter(shown) {
+        let other = of_core(rows, second).find(|line| line.encode.codec == encode.codec);
+        let (in_fixed_point, decoded) = other
+            .map_or((None, None), |line| (line.encode_sample.cycles_mean, line.decode.cycles_mean));
         text += &format!(
-            "\nCortex-{core}, `{sample}`:\n\n\
-             | codec | encode slice | cycles | nJ | in C | cycles | encode sample | cycles | worst sample | cycles | decode | cycles | plain | ratio | code slice | code sample | state | flash |\n\
-             |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+            "| {} | {} | {} | {} | {} | {} | {} | {} |\n",
+            name(&encode.codec),
+            cell(encode.cycles_mean),
+            cell(encode_sample.cycles_mean),
+            encode_sample.cycles_max.map_or("–".into(), between_whole),
+            cell(decode.cycles_mean),
+            cell(in_fixed_point),
+            cell(decoded),
+            encode.state_bytes,
         );
-        for line in lines(rows) {
-            let Line { encode, encode_sample, decode, .. } = &line;
-            if (encode.core, encode.sample.as_str(), encode.signal.as_str())
-                == (core, sample, "paper")
-            {
-                let (plain, ratio) = line.plain();
-                let nanojoules =
-                    encode.cycles_mean.map(|[_, most]| format!("{:.1}", most * energy));
-                text += &format!(
-                    "| {} | {:.1} | {} | {} | {} | {} | {:.1} | {} | {} | {} | {:.1} | {} | {plain} | {ratio} | {} | {} | {} | {} |\n",
-                    name(&encode.codec),
-                    encode.instructions_mean,
-                    cell(encode.cycles_mean),
-                    nanojoules.unwrap_or_default(),
-                    encode.in_c_mean.map_or("–".into(), |mean| format!("{mean:.1}")),
-                    cell(encode.in_c_cycles_mean),
-                    encode_sample.instructions_mean,
-                    cell(encode_sample.cycles_mean),
-                    encode_sample.instructions_max,
-                    encode_sample.cycles_max.map_or("–".into(), between_whole),
-                    decode.instructions_mean,
-                    cell(decode.cycles_mean),
-                    encode.code_bytes,
-                    encode_sample.code_bytes,
-                    encode.state_bytes,
-                    encode.flash_bytes,
-                );
-            }
-        }
     }
     text + "\n"
+}
+
+/// Formats every figure of each codec on both cores as CSV.
+fn codecs_csv(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "core,sample,scheme,\
+         encode_slice_instructions,encode_slice_cycles_least,encode_slice_cycles_most,encode_slice_nj,\
+         in_c_instructions,in_c_cycles_least,in_c_cycles_most,\
+         encode_sample_instructions,encode_sample_cycles_least,encode_sample_cycles_most,\
+         worst_sample_instructions,worst_sample_cycles_least,worst_sample_cycles_most,\
+         decode_slice_instructions,decode_slice_cycles_least,decode_slice_cycles_most,\
+         plain_instructions,plain_ratio,code_slice_bytes,code_sample_bytes,state_bytes,flash_bytes\n",
+    );
+    for (core, energy) in ENERGY {
+        for line in of_core(rows, core) {
+            let Line { encode, encode_sample, decode, .. } = &line;
+            let nanojoules = encode.cycles_mean.map(|[_, most]| most * energy);
+            let ratio = encode.plain_mean.map(|plain| plain / encode.instructions_mean);
+            let cells = [
+                core.to_owned(),
+                encode.sample.clone(),
+                encode.codec.clone(),
+                decimal(Some(encode.instructions_mean)),
+                bounds(encode.cycles_mean),
+                decimal(nanojoules),
+                decimal(encode.in_c_mean),
+                bounds(encode.in_c_cycles_mean),
+                decimal(Some(encode_sample.instructions_mean)),
+                bounds(encode_sample.cycles_mean),
+                encode_sample.instructions_max.to_string(),
+                whole_bounds(encode_sample.cycles_max),
+                decimal(Some(decode.instructions_mean)),
+                bounds(decode.cycles_mean),
+                decimal(encode.plain_mean),
+                decimal(ratio),
+                encode.code_bytes.to_string(),
+                encode_sample.code_bytes.to_string(),
+                encode.state_bytes.to_string(),
+                encode.flash_bytes.to_string(),
+            ];
+            text += &format!("{}\n", cells.join(","));
+        }
+    }
+    text
 }
 
 /// Modules of the crate besides the codecs, with their paths in an image.
@@ -210,39 +275,71 @@ const ROOMS: [(&str, &[&str]); 6] = [
     ("cameras", &["spikewire_cameras::frame::"]),
 ];
 
-/// Formats the stacks of a core: the largest bound of all sample types, and the depth seen by painting.
-fn stack(core: &str, measured: &Measured) -> Result<String> {
-    let mut codecs: Vec<&str> = Vec::new();
-    let rows = || measured.rows.iter().filter(|row| row.core == core);
-    for row in rows() {
-        if !codecs.contains(&row.codec.as_str()) {
-            codecs.push(&row.codec);
-        }
+/// Directions and forms of a codec, in the order of the tables of stacks.
+const FORMS: [(&str, &str); 4] =
+    [("encode", "sample"), ("encode", "slice"), ("decode", "sample"), ("decode", "slice")];
+
+/// A codec's stacks on one core: the largest bound of all sample types, and the largest depth seen by painting, in the
+/// order of `FORMS`.
+struct Stacks<'a> {
+    codec: &'a str,
+    bound: [u32; 4],
+    seen: [u32; 4],
+}
+
+/// Collects the stacks of a core, codec by codec.
+fn stacks<'a>(core: &str, rows: &'a [Row]) -> Vec<Stacks<'a>> {
+    let mut stacks: Vec<Stacks<'_>> = Vec::new();
+    for row in rows.iter().filter(|row| row.core == core) {
+        let form = (row.direction.as_str(), row.form.as_str());
+        let Some(form) = FORMS.iter().position(|known| *known == form) else { continue };
+        let place = stacks.iter().position(|stacks| stacks.codec == row.codec);
+        let place = place.unwrap_or_else(|| {
+            stacks.push(Stacks { codec: &row.codec, bound: [0; 4], seen: [0; 4] });
+            stacks.len() - 1
+        });
+        let Stacks { bound, seen, .. } = &mut stacks[place];
+        bound[form] = bound[form].max(row.stack_bound_bytes.unwrap_or(u32::MAX));
+        seen[form] = seen[form].max(row.stack_bytes);
     }
+    stacks
+}
+
+/// Formats every stack of a codec as CSV.
+fn stacks_csv(rows: &[Row]) -> String {
     let mut text = String::from(
-        "\n| codec | encode sample | encode slice | decode sample | decode slice |\n|---|---:|---:|---:|---:|\n",
+        "core,scheme,encode_sample_bound,encode_sample_seen,encode_slice_bound,encode_slice_seen,\
+         decode_sample_bound,decode_sample_seen,decode_slice_bound,decode_slice_seen\n",
     );
-    for codec in codecs {
-        text += &format!("| {}", name(codec));
-        for (direction, form) in
-            [("encode", "sample"), ("encode", "slice"), ("decode", "sample"), ("decode", "slice")]
-        {
-            let of = rows().filter(|row| {
-                (row.codec.as_str(), row.direction.as_str(), row.form.as_str())
-                    == (codec, direction, form)
-            });
-            let (bound, seen) = of.fold((0, 0), |(bound, seen): (u32, u32), row| {
-                (bound.max(row.stack_bound_bytes.unwrap_or(u32::MAX)), seen.max(row.stack_bytes))
-            });
-            text += &format!(" | {bound} ({seen})");
+    for core in CORES {
+        for Stacks { codec, bound, seen } in stacks(core, rows) {
+            let pairs: Vec<String> =
+                bound.iter().zip(seen).map(|(bound, seen)| format!("{bound},{seen}")).collect();
+            text += &format!("{core},{codec},{}\n", pairs.join(","));
         }
-        text += " |\n";
     }
-    // Of the usual core alone: this is another image to build.
-    if core != CORES[0] {
-        return Ok(text + "\n");
+    text
+}
+
+/// Formats the deepest stack of each form on each core, and of the modules besides the codecs.
+fn stack(rows: &[Row]) -> Result<String> {
+    let mut text = String::from(
+        "\n| core | encode a sample | encode a slice | decode a sample | decode a slice |\n|---|---|---|---|---|\n",
+    );
+    for core in CORES {
+        text += &format!("| {core} |");
+        let stacks = stacks(core, rows);
+        for form in 0..FORMS.len() {
+            // The first of equal ones.
+            let deepest = stacks.iter().rev().max_by_key(|stacks| stacks.bound[form]);
+            let Some(Stacks { codec, bound, .. }) = deepest else { continue };
+            text += &format!(" {} ({}) |", bound[form], name(codec));
+        }
+        text += "\n";
     }
-    text += "\n| everything else | at most | its deepest function |\n|---|---:|---|\n";
+    // For the usual core alone: this is another image to build.
+    let [core, _] = CORES;
+    text += &format!("\n| module, {core} | at most | its deepest function |\n|---|---:|---|\n");
     let image = image::build("no-panic", Board::with(core)?)?;
     let image = Stack::read(&image)?;
     for (room, paths) in ROOMS {
@@ -276,13 +373,10 @@ fn short(path: &str) -> String {
     }
 }
 
-fn stack_marker(core: &str) -> String {
-    format!("bench-target stack {core}")
-}
-
-/// Writes the table of a core's stacks into docs/costs.md.
-pub fn write_stack(core: &str, measured: &Measured) -> Result<()> {
-    markdown::write(CODECS.0, &stack_marker(core), &stack(core, measured)?)
+/// Writes the table of stacks into docs/costs.md, and all of them beside it.
+pub fn write_stack(measured: &Measured) -> Result<()> {
+    markdown::write(STACK.0, STACK.1, &stack(&measured.rows)?)?;
+    write_file(STACKS_CSV, &stacks_csv(&measured.rows))
 }
 
 /// Returns the codec's name in the tables.
@@ -309,7 +403,16 @@ fn name(codec: &str) -> &str {
 
 /// Writes the tables into their files.
 pub fn write(measured: &Measured) -> Result<()> {
-    tables(measured)?
-        .into_iter()
-        .try_for_each(|((file, marker), table)| markdown::write(file, marker, &table))
+    for ((file, marker), table) in tables(measured)? {
+        markdown::write(file, marker, &table)?;
+    }
+    write_file(CODECS_CSV, &codecs_csv(&measured.rows))?;
+    write_file(EVENTS_CSV, &events::csv(&measured.events))?;
+    write_file(SLOWER_CSV, &slower::csv(&measured.rows))
+}
+
+fn write_file(path: &str, text: &str) -> Result<()> {
+    fs::write(paths::root().join(path), text).with_context(|| path.to_owned())?;
+    println!("{path} is written.");
+    Ok(())
 }

@@ -1,5 +1,6 @@
 //! C compilers: the host's with its sanitizers, and the distribution's for Cortex-M.
 
+use super::flights::{self, Emitted};
 use super::{declared, include, room, work};
 use crate::common::shell;
 use crate::programs::boards::Board;
@@ -67,8 +68,8 @@ fn sources(gcc: &mut Command, name: &str, board: &str, defined: &[&str]) -> Resu
 }
 
 /// Compiles the guides, each with declarations of what its firmware provides; the firmwares themselves are not in this
-/// repository.
-pub fn guides() -> Result<()> {
+/// repository. `ends` has the headers of their flights.
+pub fn guides(ends: &Emitted) -> Result<()> {
     for (guide, compiler, standard) in [
         ("crazyflie.c", "arm-none-eabi-gcc", "c11"),
         ("betaflight.c", "arm-none-eabi-gcc", "c11"),
@@ -80,7 +81,7 @@ pub fn guides() -> Result<()> {
             gcc.args(["-mcpu=cortex-m4", "-mthumb"]);
         }
         gcc.arg(format!("-std={standard}")).args(["-Wall", "-Wextra", "-Wpedantic", "-Werror"]);
-        gcc.arg("-I").arg(include()?);
+        gcc.arg("-I").arg(&ends.include);
         gcc.arg("-I").arg(guides.join("stubs").join(Path::new(guide).with_extension("")));
         gcc.arg("-c").arg(guides.join(guide)).arg("-o").arg(work().join(guide).with_extension("o"));
         shell::run(&mut gcc)?;
@@ -90,16 +91,17 @@ pub fn guides() -> Result<()> {
 
 /// Runs the guides in C on the host with a stand-in for their firmware: what they send must arrive, and they must never
 /// wait.
-pub fn guides_run(archive: &Path) -> Result<()> {
+pub fn guides_run(ends: &Emitted) -> Result<()> {
+    let archive = flights::host_archive(super::guides::FLIGHTS, ends)?;
     for guide in ["crazyflie", "betaflight"] {
         let program = work().join(format!("guide-{guide}"));
         let (guides, tests) = (room().join("guides"), room().join("tests"));
         let mut gcc = shell::command("gcc");
         gcc.args(["-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1", "-g"]);
         gcc.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
-        gcc.arg("-I").arg(include()?).arg("-I").arg(guides.join("stubs").join(guide));
+        gcc.arg("-I").arg(&ends.include).arg("-I").arg(guides.join("stubs").join(guide));
         gcc.arg("-I").arg(&tests).arg(tests.join(format!("guide_{guide}.c")));
-        gcc.arg(guides.join(guide).with_extension("c")).arg(archive);
+        gcc.arg(guides.join(guide).with_extension("c")).arg(&archive);
         gcc.args(["-lpthread", "-ldl", "-lm", "-o"]).arg(&program);
         shell::run(&mut gcc)?;
         shell::run(&mut Command::new(program))?;

@@ -36,17 +36,12 @@ pub fn verify() -> Result<()> {
     let flown: Vec<_> = flights.into_iter().filter(|own| own.kinds == ["flown"]).collect();
     let small = emit("flown", &files, &flown)?;
 
-    let mut cargo = shell::cargo("build --lib");
-    shell::run(in_dev(&mut cargo, &pairs))?;
-    let archive = work().join("debug/libpairs.a");
+    let archive = host_archive("pairs", &pairs)?;
     let program = compiler::on_host("ends", "c99", &archive, &["PAIRS"])?;
     heard(&shell::output(&mut Command::new(program))?)?;
 
     let board = Board::with("M4F")?;
-    let mut cargo = toolchain::cargo_for(board.target, "build --release --lib")?;
-    cargo.current_dir(&small).env("RUSTFLAGS", format!("-C target-cpu={}", board.cpu));
-    shell::run(&mut cargo).context("both ends of flights for a Cortex-M4F")?;
-    let archive = paths::thumb_target().join(board.target).join("release/libflown.a");
+    let archive = board_archive("flown", &small, board)?;
     let program = compiler::for_board("ends", board, &archive, &[])?;
     known(board.core, &qemu::run(board, &program)?)
 }
@@ -81,16 +76,23 @@ fn read(files: &Path) -> Result<Vec<Flight>> {
     Ok(flights)
 }
 
-/// Makes the crate of these flights, its headers, and the list of them for C; returns its directory.
-fn emit(name: &str, files: &Path, flights: &[Flight]) -> Result<PathBuf> {
+/// The crate that `spikewire emit c` makes of flight files.
+pub struct Emitted {
+    /// Directory of the crate.
+    pub directory: PathBuf,
+    /// Directory of its headers.
+    pub include: PathBuf,
+}
+
+/// Makes the crate of these flight files, and its headers.
+pub fn emit_files(name: &str, files: impl Iterator<Item = PathBuf>) -> Result<Emitted> {
     // `emit` makes a new directory only; cargo builds it where it built the last one.
     let new = tempfile::tempdir()?;
     let emitted = new.path().join(name);
     let made = work().join("emitted").join(name);
     fs::create_dir_all(&made)?;
     let mut emit = host::spikewire("emit c --flight")?;
-    emit.args(flights.iter().map(|own| files.join(&own.name).with_extension("toml")));
-    emit.arg("-o").arg(&emitted).arg("--spikewire").arg(paths::root());
+    emit.args(files).arg("-o").arg(&emitted).arg("--spikewire").arg(paths::root());
     shell::run(&mut emit)?;
     shell::run(shell::command("cp").arg("-r").arg(emitted.join(".")).arg(&made))?;
     // The versions that the library was compiled with.
@@ -98,7 +100,29 @@ fn emit(name: &str, files: &Path, flights: &[Flight]) -> Result<PathBuf> {
     let include = work().join(name);
     let mut cargo = shell::cargo("run --features header --bin header");
     shell::run(in_dev(&mut cargo, &made).arg(&include))?;
+    Ok(Emitted { directory: made, include })
+}
 
+/// Builds the archive of an emitted crate for the host.
+pub fn host_archive(name: &str, emitted: &Emitted) -> Result<PathBuf> {
+    let mut cargo = shell::cargo("build --lib");
+    shell::run(in_dev(&mut cargo, &emitted.directory))?;
+    Ok(work().join(format!("debug/lib{name}.a")))
+}
+
+/// Builds the archive of an emitted crate for a board.
+pub fn board_archive(name: &str, emitted: &Emitted, board: &Board) -> Result<PathBuf> {
+    let mut cargo = toolchain::cargo_for(board.target, "build --release --lib")?;
+    cargo.current_dir(&emitted.directory);
+    cargo.env("RUSTFLAGS", format!("-C target-cpu={}", board.cpu));
+    shell::run(&mut cargo).with_context(|| format!("both ends of flights for {}", board.core))?;
+    Ok(paths::thumb_target().join(board.target).join(format!("release/lib{name}.a")))
+}
+
+/// Makes the crate of these flights, its headers, and the list of them for C.
+fn emit(name: &str, files: &Path, flights: &[Flight]) -> Result<Emitted> {
+    let files = flights.iter().map(|own| files.join(&own.name).with_extension("toml"));
+    let emitted = emit_files(name, files)?;
     let mut kinds: Vec<&String> = flights.iter().flat_map(|own| &own.kinds).collect();
     kinds.sort();
     kinds.dedup();
@@ -115,8 +139,8 @@ fn emit(name: &str, files: &Path, flights: &[Flight]) -> Result<PathBuf> {
             name.to_uppercase()
         );
     }
-    put(&include.join("flights.h"), &(list + "\n"))?;
-    Ok(made)
+    put(&emitted.include.join("flights.h"), &(list + "\n"))?;
+    Ok(emitted)
 }
 
 /// Sets a build of the host up to share what the library's own builds compile.

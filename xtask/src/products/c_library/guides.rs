@@ -2,12 +2,25 @@
 
 mod px4;
 
-use super::{archive, include, package, put, room, work};
-use crate::common::{paths, shell, usage};
+use super::{
+    flights::{self, Emitted},
+    package, put, room, work,
+};
+use crate::common::{shell, usage};
 use crate::programs::boards::Board;
 use crate::setup;
 use anyhow::{Context, Result, ensure};
 use std::{fs, path::Path};
+
+/// Name of the crate of the guides' flights.
+pub const FLIGHTS: &str = "guides";
+
+/// Makes the crate of both ends of the guides' flights.
+pub fn ends() -> Result<Emitted> {
+    let files = ["betaflight", "crazyflie", "px4"];
+    let files = files.map(|name| room().join("guides").join(name).with_extension("toml"));
+    flights::emit_files(FLIGHTS, files.into_iter())
+}
 
 /// Builds a guide within a checkout of its firmware, including submodules.
 pub fn guides(args: &[String]) -> Result<()> {
@@ -34,7 +47,9 @@ fn crazyflie(checkout: &Path) -> Result<()> {
         &["gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "make"],
     )?;
     let board = Board::with("M4F")?;
-    package::package(board.cpu, &archive(board)?, &[])?;
+    let ends = ends()?;
+    let archive = flights::board_archive(FLIGHTS, &ends, board)?;
+    let library = package::package_flights("guides-crazyflie", &archive, &ends.include, &[])?;
     let app = work().join("guides/crazyflie");
     fs::create_dir_all(&app)?;
     fs::copy(room().join("guides/crazyflie.c"), app.join("spikes.c"))?;
@@ -42,21 +57,24 @@ fn crazyflie(checkout: &Path) -> Result<()> {
     put(&app.join("app-config"), CONFIG)?;
     let makefile = format!("CRAZYFLIE_BASE := {}\n{MAKEFILE}", checkout.display());
     put(&app.join("Makefile"), &makefile)?;
-    let library = paths::target().join("c-library").join(board.cpu);
     for target in ["cf2_defconfig", "all"] {
         let mut make = shell::command("make");
         make.arg("-C").arg(&app).arg("-j2").arg(format!("SPIKEWIRE={}", library.display()));
         shell::run(make.arg(format!("PWD={}", app.display())).arg(target))?;
     }
-    ensure_linked("arm-none-eabi-nm", &app.join("build/cf2.elf"), "appMain")?;
+    ensure_linked(
+        "arm-none-eabi-nm",
+        &app.join("build/cf2.elf"),
+        ["appMain", "sw_crazyflie_bank_encode"],
+    )?;
     println!("crazyflie: {}", app.join("build/cf2.bin").display());
     Ok(())
 }
 
-/// Fails unless the program contains the guide's start and the library functions that it calls.
-fn ensure_linked(nm: &str, program: &Path, start: &str) -> Result<()> {
+/// Fails unless the program contains the guide's start, its bank, and the writer of frames.
+fn ensure_linked(nm: &str, program: &Path, [start, bank]: [&str; 2]) -> Result<()> {
     let symbols = shell::output(shell::command(nm).arg(program))?;
-    for symbol in [start, "sw_step_forward_f32_bank", "sw_writer_next_frame"] {
+    for symbol in [start, bank, "sw_writer_next_frame"] {
         let ends = format!(" {symbol}");
         ensure!(symbols.lines().any(|line| line.ends_with(&ends)), "the program lacks {symbol}");
     }
@@ -94,6 +112,6 @@ fn betaflight(checkout: &Path) -> Result<()> {
     ] {
         gcc.arg("-I").arg(checkout.join(directory));
     }
-    gcc.arg("-I").arg(include()?).arg(room().join("guides/betaflight.c"));
+    gcc.arg("-I").arg(ends()?.include).arg(room().join("guides/betaflight.c"));
     shell::run(&mut gcc)
 }

@@ -8,8 +8,18 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes the package below `target/c-library/<name>`; programs must also link the libraries in `needs`.
+/// Writes the package of the library below `target/c-library/<name>`; programs must also link the libraries in `needs`.
 pub fn package(name: &str, archive: &Path, needs: &[&str]) -> Result<PathBuf> {
+    package_flights(name, archive, include()?, needs)
+}
+
+/// Writes a package of this archive and the headers in `include`, as [`package`] does.
+pub fn package_flights(
+    name: &str,
+    archive: &Path,
+    include: &Path,
+    needs: &[&str],
+) -> Result<PathBuf> {
     let place = paths::target().join("c-library").join(name);
     let cmake = place.join("lib/cmake/spikewire");
     let pkgconfig = place.join("lib/pkgconfig");
@@ -17,7 +27,8 @@ pub fn package(name: &str, archive: &Path, needs: &[&str]) -> Result<PathBuf> {
         fs::create_dir_all(directory)?;
     }
     fs::copy(archive, place.join("lib/libspikewire.a"))?;
-    shell::run(shell::command("cp").arg("-r").arg(include()?).arg(&place))?;
+    fs::create_dir_all(place.join("include"))?;
+    shell::run(shell::command("cp").arg("-r").arg(include.join(".")).arg(place.join("include")))?;
     put(&cmake.join("spikewireConfig.cmake"), &CMAKE.replace("@NEEDS@", &needs.join(";")))?;
     put(&cmake.join("spikewireConfigVersion.cmake"), CMAKE_VERSION)?;
     let needed: String = needs.iter().map(|name| format!(" -l{name}")).collect();

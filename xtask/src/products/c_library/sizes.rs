@@ -1,7 +1,7 @@
 //! Measures the table of sizes in the library's README: the header's constants, and what each codec adds to a program.
 
 use super::{archive, compiler, declared, include};
-use crate::common::shell;
+use crate::common::{paths, shell};
 use crate::figures::markdown;
 use crate::programs::boards::Board;
 use anyhow::{Context, Result};
@@ -10,13 +10,70 @@ use std::{fmt::Write, fs};
 const PAGE: &str = "bindings/c/README.md";
 const MARKER: &str = "sizes";
 
-/// Writes the table into the README.
+/// Every size, of which the page shows a few.
+const FIGURES: &str = "bindings/c/sizes.csv";
+/// The codecs on the page.
+const SHOWN: [&str; 8] = [
+    "temporal_contrast",
+    "step_forward",
+    "send_on_delta_4",
+    "threshold_hough_15",
+    "sigma_delta",
+    "position_20",
+    "slots_15_10",
+    "weighted_phase_8",
+];
+
+/// Writes the table into the README, and every size beside it.
 pub fn write() -> Result<()> {
-    markdown::write(PAGE, MARKER, &format!("\n{}\n", table()?))
+    let rows = rows()?;
+    fs::write(paths::root().join(FIGURES), csv(&rows))?;
+    markdown::write(PAGE, MARKER, &table(&rows))
 }
 
-/// Formats a row for each codec in `f32`, with its `int16_t` variant beside it.
-fn table() -> Result<String> {
+/// The sizes of a codec in bytes: each pair in `f32` and in `int16_t`.
+struct Sizes {
+    codec: String,
+    parameters: [usize; 2],
+    encoder: [usize; 2],
+    decoder: [usize; 2],
+    code: usize,
+    flash: [u32; 2],
+}
+
+fn table(rows: &[Sizes]) -> String {
+    let mut table = String::from(
+        "\n| scheme | parameters | encoder | decoder | code, a sample | flash, Cortex-M4F |\n|---|---|---|---|---|---|\n",
+    );
+    for Sizes { codec, parameters, encoder, decoder, code, flash } in
+        rows.iter().filter(|row| SHOWN.contains(&row.codec.as_str()))
+    {
+        let [parameters, encoder, decoder] =
+            [parameters, encoder, decoder].map(|[floats, counts]| format!("{floats}, {counts}"));
+        let [floats, counts] = flash;
+        let _ = writeln!(
+            table,
+            "| `{codec}` | {parameters} | {encoder} | {decoder} | {code} | {floats}, {counts} |"
+        );
+    }
+    table + "\n"
+}
+
+fn csv(rows: &[Sizes]) -> String {
+    let mut text = String::from(
+        "scheme,parameters_f32,parameters_i16,encoder_f32,encoder_i16,decoder_f32,decoder_i16,code,flash_f32,flash_i16\n",
+    );
+    for Sizes { codec, parameters, encoder, decoder, code, flash } in rows {
+        let [parameters, encoder, decoder] =
+            [parameters, encoder, decoder].map(|[floats, counts]| format!("{floats},{counts}"));
+        let [floats, counts] = flash;
+        let _ = writeln!(text, "{codec},{parameters},{encoder},{decoder},{code},{floats},{counts}");
+    }
+    text
+}
+
+/// Measures each codec in `f32`, with its `int16_t` variant beside it.
+fn rows() -> Result<Vec<Sizes>> {
     let board = Board::with("M4F")?;
     let archive = archive(board)?;
     let text = |defined: &[&str]| -> Result<u32> {
@@ -27,41 +84,35 @@ fn table() -> Result<String> {
     };
     let nothing = text(&[])?;
     let flown = declared::flown();
-    let mut table = String::from(
-        "| codec | parameters | encoder | decoder | code, a sample | flash, Cortex-M4F |\n|---|---|---|---|---|---|\n",
-    );
-    let mut last = String::new();
+    let mut rows: Vec<Sizes> = Vec::new();
     for line in flown.lines().filter(|line| line.starts_with("FLY(") && line.contains("_f32,")) {
         let words: Vec<&str> = line.trim_start_matches("FLY(").split(", ").collect();
         let (name, init) = (words[0].trim_end_matches("_f32"), words[4]);
-        if name == last {
+        if rows.last().is_some_and(|last| last.codec == name) {
             continue;
         }
-        name.clone_into(&mut last);
         let header = fs::read_to_string(include()?.join(format!("spikewire/{name}.h")))?;
-        let pair = |part: &str, more: usize| -> Result<String> {
-            let of = |sample: &str| {
+        let pair = |part: &str, more: usize| -> Result<[usize; 2]> {
+            let padded = |sample: &str| {
                 size(&header, &format!("{name}_{sample}{part}"))
                     .map(|own| (own + more).next_multiple_of(4))
             };
-            Ok(format!("{}, {}", of("f32")?, of("i16")?))
+            Ok([padded("f32")?, padded("i16")?])
         };
-        let mut flash = Vec::new();
-        for sample in ["f32", "i16"] {
+        let flash = |sample: &str| {
             let defined = [format!("CODEC={name}_{sample}"), format!("MAKE={init}")];
-            flash.push((text(&[&defined[0], &defined[1]])? - nothing).to_string());
-        }
-        let code = size(&header, &format!("{name}_f32_code")).unwrap_or(1);
-        let _ = writeln!(
-            table,
-            "| `{name}` | {} | {} | {} | {code} | {} |",
-            pair("", 0)?,
-            pair("_encoder_state", 4)?,
-            pair("_decoder_state", 4)?,
-            flash.join(", ")
-        );
+            anyhow::Ok(text(&[&defined[0], &defined[1]])? - nothing)
+        };
+        rows.push(Sizes {
+            codec: name.to_owned(),
+            parameters: pair("", 0)?,
+            encoder: pair("_encoder_state", 4)?,
+            decoder: pair("_decoder_state", 4)?,
+            code: size(&header, &format!("{name}_f32_code")).unwrap_or(1),
+            flash: [flash("f32")?, flash("i16")?],
+        });
     }
-    Ok(table)
+    Ok(rows)
 }
 
 /// Returns the value of a size's macro.

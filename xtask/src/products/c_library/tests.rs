@@ -1,6 +1,6 @@
 //! The C library's tests: programs in C on the host and on emulated boards, compared with the crate.
 
-use super::{archive, compiler, ensure_written, flights, host_archive, watched_archive};
+use super::{archive, compiler, ensure_written, flights, guides, host_archive, watched_archive};
 use crate::common::shell;
 use crate::programs::boards::{BOARDS, Board};
 use crate::programs::{host, qemu};
@@ -21,8 +21,9 @@ pub fn verify() -> Result<()> {
         let misuse = compiler::on_host("misuse", language, &archive, &[])?;
         print!("{}", shell::output(&mut Command::new(misuse))?);
     }
-    compiler::guides()?;
-    compiler::guides_run(&archive)?;
+    let ends = guides::ends()?;
+    compiler::guides(&ends)?;
+    compiler::guides_run(&ends)?;
     let rust = in_rust()?;
     let flight = compiler::on_host("flight", "c99", &archive, &SAMPLES)?;
     compare("host", &shell::output(&mut Command::new(flight))?, &rust)?;

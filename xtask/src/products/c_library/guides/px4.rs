@@ -1,8 +1,8 @@
 //! The guide for PX4, as a module of the firmware's own build, for its simulator (SITL).
 
 use super::{
-    super::{host, put, room, work},
-    ensure_linked,
+    super::{flights, package, put, room, work},
+    FLIGHTS, ends, ensure_linked,
 };
 use crate::common::shell;
 use crate::programs::python;
@@ -15,7 +15,10 @@ pub fn px4(checkout: &Path) -> Result<()> {
     setup::packages("what builds PX4", &["cmake", "g++", "ninja-build"])?;
     let python = python::environment("px4")?;
     python::install(&python, &PACKAGES)?;
-    let library = host()?;
+    let ends = ends()?;
+    let archive = flights::host_archive(FLIGHTS, &ends)?;
+    let needs = ["pthread", "dl", "m"];
+    let library = package::package_flights("guides-px4", &archive, &ends.include, &needs)?;
     let place = work().join("guides/px4");
     let module = place.join("src/modules/spikes");
     fs::create_dir_all(&module)?;
@@ -37,7 +40,7 @@ pub fn px4(checkout: &Path) -> Result<()> {
     cmake.arg(format!("-DPYTHON_EXECUTABLE={}", python.display()));
     shell::run(&mut cmake)?;
     shell::run(shell::command("cmake").arg("--build").arg(&build).args(["--target", "px4"]))?;
-    ensure_linked("nm", &build.join("bin/px4"), "spikes_main")?;
+    ensure_linked("nm", &build.join("bin/px4"), ["spikes_main", "sw_px4_bank_encode"])?;
     println!("px4: {}", build.join("bin/px4").display());
     Ok(())
 }
