@@ -434,7 +434,8 @@ impl<'a, P: Storable> World<'a, P> {
     fn send(&mut self, loss: f64) {
         let mut items = VecDeque::from(std::mem::take(&mut self.items.0));
         let may_wait = self.is_attack && self.sending.gathering > 0 && self.draw(3) > 0;
-        let longest = if may_wait { 0 } else { self.sending.gathering };
+        // The last event of a sample with sub-timesteps is almost a period later than the sample.
+        let longest = if may_wait { 0 } else { self.sending.gathering + self.period };
         self.transmitter.observe(Tick::from_micros(self.taken + u64::from(longest)));
         let mut source = FromItems(std::iter::from_fn(|| items.pop_front()));
         let mut buffer = [0; MAX_FRAME];

@@ -4,6 +4,7 @@
 mod common;
 
 use common::{file, good, ran, refused, spikewire};
+use std::fmt::Write as _;
 
 const UNEVEN: &str = "800.00 Hz by samples through length, 20000.00 Hz by the median step";
 const GIVEN: &str =
@@ -16,7 +17,7 @@ fn packets() -> String {
     for at in 0..4000_u32 {
         let time = f64::from(at / 8) * 0.01 + f64::from(at % 8) * 0.00005;
         let value = (std::f64::consts::TAU * 1.5 * f64::from(at) / 800.0).sin();
-        table += &format!("{time:.6},{value:.6}\n");
+        writeln!(table, "{time:.6},{value:.6}").unwrap();
     }
     table
 }
@@ -105,10 +106,10 @@ fn each_command_reports_a_given_rate_that_the_times_contradict() {
     let manifest = std::fs::read_to_string(directory.path().join("set/manifest.jsonl")).unwrap();
     assert!(manifest.contains(GIVEN), "{manifest}");
     // The flight has the rate that was last given, 750 Hz, and another recording a fourth of it.
-    let slow = "time,gyro_x\n".to_owned()
-        + &(0..400)
-            .map(|row| format!("{:.3},{}\n", f64::from(row) * 0.005, row % 7))
-            .collect::<String>();
+    let mut slow = "time,gyro_x\n".to_owned();
+    for row in 0..400 {
+        writeln!(slow, "{:.3},{}", f64::from(row) * 0.005, row % 7).unwrap();
+    }
     let (_directory, slow) = file("slow.csv", slow);
     let flight = path("flight.toml");
     let words = "the recording has 200.00 samples a second, and the flight 750.19";
@@ -159,7 +160,7 @@ fn ardupilot() -> String {
     for line in packets().lines().skip(1) {
         let (time, value) = line.split_once(',').unwrap();
         let time: f64 = time.parse().unwrap();
-        log += &format!("IMU, {}, {value}\n", (time * 1e6).round());
+        writeln!(log, "IMU, {}, {value}", (time * 1e6).round()).unwrap();
     }
     log
 }

@@ -5,6 +5,7 @@ mod common;
 
 use common::{file, good, ran, refused, spikewire};
 use serde_json::Value;
+use std::fmt::Write as _;
 
 /// Returns the path of a file in the directory `recordings`.
 fn path(name: &str) -> String {
@@ -65,10 +66,10 @@ fn packets_have_the_rate_of_their_samples() {
     let words = ["800.00 Hz by samples through length", "--rate says how many a second are taken"];
     let advise = "advise --evaluations 3 --max-rmse 0.1";
     refused(&format!("{advise} {table}"), "", &words);
-    let advice = ran!("{advise} --rate 800 {table}").output;
+    let report = ran!("{advise} --rate 800 {table}").output;
     assert!(
-        advice.contains("800 a second, jitter 3.") && advice.contains(" ms, 0 gaps"),
-        "{advice}"
+        report.contains("800 a second, jitter 3.") && report.contains(" ms, 0 gaps"),
+        "{report}"
     );
     let tune = "tune --scheme sf --max-rmse 0.1 --evaluations 3 --emit flight";
     refused(&format!("{tune} {table}"), "", &words);
@@ -242,9 +243,9 @@ fn records_of_a_flysight_2_are_read_by_their_kind() {
             .to_owned();
     for row in 0..400 {
         let time = f64::from(row) * 0.01;
-        log += &format!("$IMU,{time:.3},{},{}\n", row % 7, row % 5);
+        writeln!(log, "$IMU,{time:.3},{},{}", row % 7, row % 5).unwrap();
         if row % 10 == 0 {
-            log += &format!("$BARO,{time:.3},{}\n", 101_325 - row);
+            writeln!(log, "$BARO,{time:.3},{}", 101_325 - row).unwrap();
         }
     }
     let (_directory, path) = file("SENSOR.CSV", &log);

@@ -227,8 +227,8 @@ fn lost_steps_heal_at_the_next_event() {
         let mut current = BTreeSet::new();
         while let Some(frame) = transmitter.next_frame(taken(&mut items), &mut buffer).unwrap() {
             frames += 1;
-            let (mut bytes, mut heard) = (frame, frame);
-            let seen = witness.next_frame(&mut bytes).unwrap();
+            let (mut sent, mut arriving) = (frame, frame);
+            let seen = witness.next_frame(&mut sent).unwrap();
             let channels = seen.frame.events().map(|event| usize::from(event.address));
             let has_keyframes = seen.frame.keyframes().count() > 0;
             if frames % 7 == 0 && !has_keyframes {
@@ -239,8 +239,8 @@ fn lost_steps_heal_at_the_next_event() {
                 }
                 continue;
             }
-            let received = reader.next_frame(&mut heard).unwrap();
-            receiver.apply(&received, |_, _, _| ());
+            let heard = reader.next_frame(&mut arriving).unwrap();
+            receiver.apply(&heard, |_, _, _| ());
             if has_keyframes {
                 is_off.fill(false);
             }

@@ -150,7 +150,8 @@ impl Transmitter {
     ///
     /// [`next_frame`](Self::next_frame) returns `None` while they wait, and they stay in their queue, which must have room
     /// for them. How long they have waited is known by [`observe`](Self::observe) alone, which must be called at each
-    /// turn. A keyframe or a break does not wait, but for the events before it.
+    /// turn, and `next_frame` after it: an event that is taken 2³⁰ µs after its tick gets the time of another. A keyframe
+    /// or a break does not wait, but for the events before it.
     #[must_use]
     pub const fn with_gathering(self, micros: u32) -> Self {
         Self { gathering: Gathering { micros, ..self.gathering }, ..self }

@@ -186,21 +186,8 @@ impl Table {
                 {
                     *first = bare.to_owned();
                 }
-                if let (Some(line), Some(columns)) = (given_line, rows.columns)
-                    && names.len() != columns
-                {
-                    let count = names.len();
-                    let rest = if count > columns {
-                        format!("the first {columns} are taken")
-                    } else {
-                        format!("the columns behind them are called by their number")
-                    };
-                    notes.push(
-                        format!("line {line} has {count} names for {columns} columns; {rest}")
-                            .into(),
-                    );
-                    names.truncate(columns);
-                    names.extend((count + 1..=columns).map(|number| number.to_string()));
+                if let (Some(line), Some(columns)) = (given_line, rows.columns) {
+                    notes.extend(fit_names(&mut names, line, columns));
                 }
                 names
             }
@@ -576,6 +563,22 @@ impl Source for Table {
     fn notes(&self) -> &[Words] {
         &self.notes
     }
+}
+/// Gives each of `columns` one name: leaves out the names of the header in `line` that have no column, and calls the
+/// columns without a name by their number. Returns a note if the header had more names or fewer.
+fn fit_names(names: &mut Vec<String>, line: u64, columns: usize) -> Option<Words> {
+    let count = names.len();
+    if count == columns {
+        return None;
+    }
+    let rest = if count > columns {
+        format!("the first {columns} are taken")
+    } else {
+        "the columns behind them are called by their number".to_owned()
+    };
+    names.truncate(columns);
+    names.extend((count + 1..=columns).map(|number| number.to_string()));
+    Some(format!("line {line} has {count} names for {columns} columns; {rest}").into())
 }
 
 /// Returns whether a field is a spelling of a missing value, such as `NA`.
