@@ -434,9 +434,11 @@ impl<'a, P: Storable> World<'a, P> {
     fn send(&mut self, loss: f64) {
         let mut items = VecDeque::from(std::mem::take(&mut self.items.0));
         let may_wait = self.is_attack && self.sending.gathering > 0 && self.draw(3) > 0;
-        // The last event of a sample with sub-timesteps is almost a period later than the sample.
-        let longest = if may_wait { 0 } else { self.sending.gathering + self.period };
-        self.transmitter.observe(Tick::from_micros(self.taken + u64::from(longest)));
+        if !may_wait {
+            // All goes at once, also what a clock that stepped back has left ahead of its time.
+            self.transmitter = self.transmitter.with_gathering(0);
+        }
+        self.transmitter.observe(Tick::from_micros(self.taken));
         let mut source = FromItems(std::iter::from_fn(|| items.pop_front()));
         let mut buffer = [0; MAX_FRAME];
         let mut is_last_here = false;
@@ -459,6 +461,7 @@ impl<'a, P: Storable> World<'a, P> {
             self.reader = reader;
         }
         self.items.0 = items.into();
+        self.transmitter = self.transmitter.with_gathering(self.sending.gathering);
         if may_wait {
             self.unsent = Some(unsent);
             return;

@@ -49,7 +49,7 @@ fn run(out: &mut impl Write) -> fmt::Result {
     let (mut read_in_all, mut encoded_in_all, mut framed_in_all, mut worst) = (0, 0, 0, 0);
     let (mut sent, mut values) = (0, 0);
     for burst in 0..SECONDS * u32::from(SAMPLE_RATE) / WATERMARK as u32 {
-        now += u32::from(PERIOD) * WATERMARK as u32;
+        now += PERIOD * WATERMARK as u32;
         sensor.fill(&mut fifo.borrow_mut());
         let mut read = None;
         let reading = instructions(|| read = block_on(imu.read()).ok());

@@ -6,7 +6,7 @@ use embedded_hal_async::spi::{ErrorType, Operation, SpiDevice};
 use icm42688p::{PACKET, SAMPLE_RATE, WATERMARK};
 
 /// From one sample to the next, in µs.
-pub const PERIOD: u16 = (1_000_000 / SAMPLE_RATE as u32) as u16;
+pub const PERIOD: u32 = 1_000_000 / SAMPLE_RATE as u32;
 
 /// Counts of 1 rad/s at ±2000 °/s, and of 1 m/s² at ±16 g.
 const COUNTS: [f32; 6] = {
@@ -50,7 +50,7 @@ impl Sensor {
         }
         let ((start, from), (end, to)) = (record(self.record), record(self.record + 1));
         let part = (self.micros - start) as f32 / (end - start) as f32;
-        self.micros += u32::from(PERIOD);
+        self.micros += PERIOD;
         core::array::from_fn(|channel| {
             self.noise = self.noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let value = from[channel] + part * (to[channel] - from[channel]);
