@@ -463,8 +463,14 @@ impl Hearer {
         while let Some(received) = reader.next_frame(&mut bytes) {
             far.hear(&received);
         }
-        let (frames, late) = (reader.frames().into(), reader.late().into());
-        LinkTally { frames, late, ..LinkTally::default() }.has_two_senders()
+        let tally = LinkTally {
+            frames: reader.frames().into(),
+            late: reader.late().into(),
+            lost: reader.lost_frames().into(),
+            bad_checksums: reader.bad_checksums().into(),
+            ..LinkTally::default()
+        };
+        tally.has_two_senders()
     }
 
     /// Says that all events before this time in µs have arrived.
