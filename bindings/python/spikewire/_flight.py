@@ -40,8 +40,6 @@ class Flight:
 
     @checked
     def __init__(self, path: str | os.PathLike[str]):
-        from ._schemes import schemes
-
         told = _native.flight(os.fspath(path))
         scheme, sample, period, keyframe_every, clock_ppm, label, fingerprint, filtered, channels, rounded, sends = told
         for change in rounded:
@@ -57,7 +55,7 @@ class Flight:
         #: Counts for one unit of each channel.
         self.counts: NDArray[Any] = np.array([own[3] for own in channels])
         #: The scheme of each channel, with the parameters that the sample type has.
-        self.schemes: list[Scheme] = [schemes[scheme]._of(dict(own[4]), sample) for own in channels]
+        self.schemes: list[Scheme] = [_scheme(scheme, dict(own[4]), sample) for own in channels]
         #: The time from sample to sample in µs.
         self.period: int = period
         #: Samples from one keyframe or heartbeat to the next.
@@ -88,6 +86,14 @@ class Flight:
 
     def __repr__(self) -> str:
         return f"Flight of {self.scheme}: {', '.join(self.names)}, one sample in {self.period} µs"
+
+
+def _scheme(name: str, options: dict[str, Any], sample: str) -> Scheme:
+    """The scheme of a channel. A flight's `start` is a number of the file, and not found from a first sample."""
+    from ._schemes import schemes
+
+    start = {"start": options["start"]} if "start" in options else None
+    return schemes[name]._of(options, sample, start)
 
 
 def _filter(told: tuple[str, float, float | None] | None, rate: float) -> Filter | None:

@@ -321,9 +321,10 @@ fn damage_a_cut_end_and_a_start_in_the_middle_are_counted() {
             changed(&|frames| frames[10][7] ^= 1),
             [format!("{} frames: 1 lost in 1 gaps, ", count - 1), skipped(10, 0)],
         ),
-        // A damaged length that exceeds the rest of the input does not hide the frames after it.
+        // A damaged length that exceeds the rest of the input does not hide the frames after it: of a short frame, with
+        // the longest length that its first byte has.
         (
-            changed(&|frames| frames[count - 3][17] = 0xFF),
+            changed(&|frames| frames[count - 3][0] |= 0x0E),
             [format!("{} frames: 1 lost in 1 gaps, ", count - 1), " bad checksums".into()],
         ),
         (
