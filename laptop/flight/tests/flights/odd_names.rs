@@ -13,6 +13,9 @@ pub mod flight {
     /// Number of counts in one unit of each channel.
     pub const COUNTS: [f64; CHANNELS] = [1.0, 1.0, 1.0, 1.0];
 
+    /// Size of each channel's unit, in rad/s and in m/s²; 0 where the unit is none of that quantity.
+    pub const SI: [[f64; 2]; CHANNELS] = [[1.0, 0.0], [1.0, 0.0], [0.0, 0.0], [0.0, 9.80665]];
+
     /// Type of every channel's scheme.
     pub type Code = spikewire::temporal::SendOnDelta<fixed::types::I8F8, 4>;
 
