@@ -4,7 +4,7 @@ use flight::{Channels, Counts, Fault, News, Registers, Sample, Station, Why};
 use spikewire::{Bank, EventQueue, Item, Overflow, Source, temporal::SendOnDelta};
 use std::{cell::Cell, future::pending, rc::Rc};
 
-const PERIOD: u16 = 5_000;
+const PERIOD: u32 = 5_000;
 const COUNTS: Counts = Counts::of_ranges(2000.0, 16.0);
 static CODE: SendOnDelta<f32, 8> = SendOnDelta::new(0.05);
 const CHANNELS: Channels<2> =
