@@ -88,7 +88,10 @@ impl FarEnd {
         mut on_command: impl FnMut(Command),
     ) {
         while let Some(received) = self.reader.next_frame(&mut bytes) {
-            self.heard = Some(now);
+            // Bytes of which no frame can be read are no sign of life.
+            if !received.is_unread {
+                self.heard = Some(now);
+            }
             self.receiver.apply(&received, &mut on_value);
             on_command(self.command());
         }

@@ -95,8 +95,15 @@ fn neutral_from_a_flipped_bit_to_the_next_keyframe() {
     let mut frame = sender.sample(0.5);
     let middle = frame.len() / 2;
     frame[middle] ^= 4;
-    assert_eq!(after(&mut far, &frame), None);
-    assert_eq!(after(&mut far, &sender.sample(0.8)), Some(Command::Neutral));
+    // What cannot be read may look like the beginning of a frame, and holds back those behind it: then a silence ends
+    // what is exact, at the latest.
+    let mut commands = vec![];
+    for bytes in [frame, sender.sample(0.8), sender.sample(1.1)] {
+        commands.extend(after(&mut far, &bytes));
+    }
+    commands.extend(far.silence(SILENCE_MS));
+    assert!(!commands.is_empty(), "no frame, and no silence");
+    assert!(commands.iter().all(|command| *command == Command::Neutral), "{commands:?}");
     assert!(matches!(after(&mut far, &sender.keyframe()), Some(Command::Damp(_))));
 }
 
@@ -145,7 +152,13 @@ fn bytes_that_are_no_frame_are_silence() {
         let (_, mut far) = running();
         let mut neutral = None;
         for now in (0..1_000).step_by(10) {
-            far.take(now, &noise, |_, _, _| (), |command| panic!("{what}: {command:?}"));
+            // A damaged frame may end what is exact, and says nothing else.
+            far.take(
+                now,
+                &noise,
+                |_, _, _| (),
+                |command| assert_eq!(command, Command::Neutral, "{what}"),
+            );
             neutral = neutral.or(far.silence(now).map(|command| (now, command)));
         }
         assert_eq!(neutral, Some((SILENCE_MS, Command::Neutral)), "{what}");
