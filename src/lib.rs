@@ -71,7 +71,7 @@
 //! | `heapless` | `heapless::Vec`, `Deque`, `spsc` and `mpmc` as ends of queues, by way of `Counted` |
 //! | `portable-atomic` | `heapless::mpmc` on a Cortex-M0; needs a `critical-section` implementation in the program |
 //! | `link` | `link`: framed events over any byte transport |
-//! | `link-small` | the same with 960 bytes of tables less, and a checksum that takes twice as long |
+//! | `link-small` | the same with 960 bytes of tables less, and two look-ups a byte for the checksum in place of one |
 //! | `embedded-hal` | [`out`]: SPI |
 //! | `async` | [`out`]: asynchronous SPI; waiting on a queue |
 //! | `embedded-io` | [`out`]: UART and USB serial, over ports of `embedded-io` 0.7 |

@@ -259,7 +259,7 @@ struct Recorded {
     /// How many items are in frames.
     framed: u64,
     last: Option<u64>,
-    /// What reads every frame that is sent.
+    /// Reader of every frame that is sent.
     watch: Reader<MAX_FRAME>,
 }
 

@@ -88,7 +88,7 @@ enum Clock {
 #[derive(Clone, Copy, Debug)]
 struct Sending {
     step_bits: u8,
-    /// How many µs an event may wait.
+    /// Longest time that an event waits, in µs.
     gathering: u32,
     full_every: u32,
 }
@@ -140,7 +140,7 @@ struct World<'a, P: Scheme> {
     /// The numbers of the first frame of the session, and of the last one sent.
     first: u64,
     last: u64,
-    /// What reads every frame that is sent.
+    /// Reader of every frame that is sent.
     watch: Reader<MAX_FRAME>,
     /// Whether the reader has heard that first frame, and the number of the last one of the session that it heard.
     is_first_heard: bool,

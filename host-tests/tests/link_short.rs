@@ -535,6 +535,9 @@ fn heard(received: &Received<'_>) -> Option<Heard> {
     })
 }
 
+/// The code of the ends at which a frame is damaged.
+static STEP: StepForward<i16> = StepForward::new(10);
+
 /// A line with one sender, whose frames are lost on demand.
 struct Line {
     link: Transmitter,
@@ -647,7 +650,6 @@ where
 /// Numbers that do not fit the events are the sender's mistake, and no value is exact after them.
 #[test]
 fn a_step_number_that_contradicts_is_a_misfit() {
-    static STEP: StepForward<i16> = StepForward::new(10);
     let mut near = Line::new(4);
     let mut receiver = Receiver::<_, 2, 0>::new(&STEP);
     let mut hear = |bytes: &[u8], reader: &mut Reader<MAX_FRAME>| {
@@ -693,6 +695,51 @@ fn a_short_frame_is_read_behind_the_one_before_alone() {
     assert_eq!(reader.skipped(), 0);
     let mut input = &frames[67][..];
     assert!(reader.next_frame(&mut input).is_some_and(|received| received.is_unread));
+}
+
+/// A flip of any bit of a frame, full or short: nothing comes but what stands for it, whether the bytes come at once or
+/// one by one. It comes with the frame's last byte, or after a silence where the flip makes the frame seem longer.
+#[test]
+fn a_damaged_frame_is_reported_at_once() {
+    let mut line = Line::new(4);
+    let keyframe = Keyframe::new(Tick::from_micros(line.now), 1, 0_i16);
+    let first = line.frame(&[keyframe.into()]);
+    let frames: Vec<_> = (0..8).map(|_| line.frame(&[line.step(Polarity::Up)])).collect();
+    let (full, short) = (&frames[2], &frames[3]);
+    assert!(FrameView::new(full).is_ok() && FrameView::new(short).is_err());
+    for (before, frame, most_longer) in [(2, full, 8), (3, short, 8)] {
+        let mut longer = 0;
+        for bit in 0..8 * frame.len() {
+            let mut damaged = frame.clone();
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            for piece in [1, damaged.len()] {
+                let mut reader = Reader::<MAX_FRAME>::new();
+                let mut receiver = Receiver::<_, 2, 0>::new(&STEP);
+                for mut bytes in [&first].into_iter().chain(&frames[..before]).map(Vec::as_slice) {
+                    receiver.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
+                }
+                assert!(receiver.exact(1).is_some());
+                let mut unread = 0;
+                for mut bytes in damaged.chunks(piece) {
+                    while let Some(received) = reader.next_frame(&mut bytes) {
+                        assert!(received.is_unread);
+                        unread += 1;
+                        receiver.apply(&received, |_, _, _| ());
+                    }
+                }
+                let seems_longer = unread == 0;
+                longer += u32::from(seems_longer);
+                while let Some(received) =
+                    seems_longer.then(|| reader.next_after_silence()).flatten()
+                {
+                    unread += u32::from(received.is_unread);
+                    receiver.apply(&received, |_, _, _| ());
+                }
+                assert_eq!((receiver.exact(1), unread), (None, 1), "bit {bit} of {damaged:02x?}");
+            }
+        }
+        assert!(longer <= 2 * most_longer, "{longer}");
+    }
 }
 
 /// Frames of another session, time, coding or fingerprint fail their check.

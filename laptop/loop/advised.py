@@ -39,7 +39,7 @@ def advised(spikewire: str, log: Path) -> Bank:
     taken = {channel["name"]: shared | channel.get("parameters", {}) for channel in own["channel"]}
     groups = tuple(taken[name] for name in CHANNELS)
     keyframe_ms = round(own["keyframe_every"] * own["period"] / 1000)
-    return Bank(own["scheme"], filter_ and filter_["corner"], keyframe_ms, groups, own.get("step-bits", own.get("step_bits", 0)))
+    return Bank(own["scheme"], filter_ and filter_["corner"], keyframe_ms, groups, own.get("step_bits", 0))
 
 
 def main(spikewire: str) -> None:

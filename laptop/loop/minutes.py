@@ -100,6 +100,7 @@ def ways() -> dict[str, Callable[[int], Way]]:
         "125 samples/s behind 160 Hz": samples(125, 160),
         "250 samples/s behind 160 Hz": samples(250, 160),
         "dead band behind 80 Hz": dead_band(1, 80),
+        "dead band x 2 behind 80 Hz": dead_band(2, 80),
         "dead band x 2 behind 200 Hz": dead_band(2, 200),
     }
     for path in (KEPT_NUMBERED, None, KEPT_ADVISED):
@@ -116,6 +117,7 @@ SHOWN = [
     "sod/numbered-unfiltered",
     "125 samples/s behind 80 Hz",
     "dead band x 2 behind 200 Hz",
+    "dead band x 2 behind 80 Hz",
     "sod/numbered-cascade",
     "sod/numbered-fine",
     "sod/numbered-blind",
@@ -301,10 +303,10 @@ def label(name: str) -> str:
         RAW: "raw samples",
         "sod": "`sod` behind 80 Hz, without step numbers",
         "sod/numbered": "**`sod` with step numbers, behind 200 Hz**",
-        "sod/numbered-unfiltered": "the same without a filter",
-        "sod/numbered-cascade": "the same behind 80 Hz, for the cascade",
-        "sod/numbered-fine": "the same behind 80 Hz, thresholds half as large",
-        "sod/numbered-blind": "the same behind 200 Hz, deaf to gravity",
+        "sod/numbered-unfiltered": "`sod` with step numbers, without a filter",
+        "sod/numbered-cascade": "`sod` with step numbers, behind 80 Hz, for the cascade",
+        "sod/numbered-fine": "`sod` with step numbers, behind 80 Hz, thresholds half as large",
+        "sod/numbered-blind": "`sod` with step numbers, behind 200 Hz, deaf to gravity",
     }.get(name, name)
 
 

@@ -25,43 +25,46 @@ unsafe extern "C" fn sw_writer_init(
     unsafe { Kept::keep(writer, Transmitter::new(coding, Session::random(session))) }.into()
 }
 
+/// Replaces a writer by the one with another setting.
+///
+/// # Safety
+/// C's promise of [`pointer`].
+unsafe fn set(
+    writer: *mut Kept<Transmitter>,
+    with: impl FnOnce(Transmitter) -> Transmitter,
+) -> Status {
+    let set = || {
+        // SAFETY: the caller's promise.
+        let writer = unsafe { Kept::exclusive(writer)? };
+        *writer = with(*writer);
+        Ok(Status::OK)
+    };
+    set().into()
+}
+
 /// Sends the fingerprint of a description.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn sw_writer_describe(
     writer: *mut Kept<Transmitter>,
     fingerprint: u32,
 ) -> Status {
-    let describe = || {
-        // SAFETY: C's promise.
-        let writer = unsafe { Kept::exclusive(writer)? };
-        *writer = writer.with_fingerprint(Fingerprint::from_bits(fingerprint));
-        Ok(Status::OK)
-    };
-    describe().into()
+    let fingerprint = Fingerprint::from_bits(fingerprint);
+    // SAFETY: C's promise.
+    unsafe { set(writer, |writer| writer.with_fingerprint(fingerprint)) }
 }
 
 /// Sends step numbers, by which step codes heal after lost frames.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn sw_writer_heal(writer: *mut Kept<Transmitter>, bits: u8) -> Status {
-    let heal = || {
-        // SAFETY: C's promise.
-        let writer = unsafe { Kept::exclusive(writer)? };
-        *writer = writer.with_step_bits(bits);
-        Ok(Status::OK)
-    };
-    heal().into()
+    // SAFETY: C's promise.
+    unsafe { set(writer, |writer| writer.with_step_bits(bits)) }
 }
 
 /// Lets events wait for others.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn sw_writer_gather(writer: *mut Kept<Transmitter>, micros: u32) -> Status {
-    let gather = || {
-        // SAFETY: C's promise.
-        let writer = unsafe { Kept::exclusive(writer)? };
-        *writer = writer.with_gathering(micros);
-        Ok(Status::OK)
-    };
-    gather().into()
+    // SAFETY: C's promise.
+    unsafe { set(writer, |writer| writer.with_gathering(micros)) }
 }
 
 /// Tells a writer the time.

@@ -16,6 +16,7 @@ from torch import Tensor, nn
 
 from . import _native
 from ._errors import Error
+from ._network import numbers_of
 
 Array = NDArray[np.float64]
 
@@ -262,12 +263,6 @@ def takes_all_steps(layer: nn.Module) -> bool:
 
 def rows(tensors: list[Tensor]) -> NDArray[np.float64]:
     return np.array([np.asarray(one).ravel() for one in tensors], np.float64)
-
-
-def numbers_of(counts: NDArray[np.float64]) -> list[list[int]]:
-    """The numbers of the inputs that fire in each step."""
-    inputs = np.arange(counts.shape[1])
-    return [np.repeat(inputs, step.astype(int)).tolist() for step in counts]
 
 
 def written(name: str, weights: Array, bias: Array, neurons: Neurons, reset: str) -> dict[str, Any]:

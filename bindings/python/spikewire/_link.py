@@ -52,7 +52,7 @@ class Sender:
         channels: Whole | None = None,
         step_bits: Whole = 0,
         gathering: Whole = 0,
-        full_every: Whole = 1 << 19,
+        full_every: Whole | None = None,
     ):
         self._made_of = (
             schemes,

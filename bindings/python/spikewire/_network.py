@@ -89,7 +89,7 @@ class Network:
         if sample is not None or spikes is not None:
             if sample is None or spikes is None:
                 raise Error("sample and spikes go together: what went into the network, and what it fired")
-            recorded = _trains(sample), _trains(spikes)
+            recorded = numbers_of(_counts(sample)), numbers_of(_counts(spikes))
         return cls(_native.Network(Path(path), (framework, fires, decay, current), resets, dt, recorded))
 
     @classmethod
@@ -112,15 +112,8 @@ class Network:
         """
         from . import _from_torch
 
-        counts, _, _ = read(sample)
-        if counts.ndim != 2:
-            raise Error(f"a sample is an array (steps, inputs) of counts of spikes, not {counts.shape}")
-        if not _are_counts(counts):
-            raise Error("a sample has counts of spikes, 0 and above: networks that take values are not read yet")
-        layers = _from_torch.layers_of(module, counts.astype(np.float64))
-        network = cls(_native.Network.from_json(json.dumps({"layers": layers})))
-        network._steps(counts)
-        return network
+        layers = _from_torch.layers_of(module, _counts(sample).astype(np.float64))
+        return cls(_native.Network.from_json(json.dumps({"layers": layers})))
 
     @classmethod
     @checked
@@ -293,7 +286,7 @@ class Network:
         for step in counts:
             if step.shape != inputs.shape or step.dtype.kind not in "fiub" or not _are_counts(step):
                 raise Error(f"a step has {self.inputs} counts of spikes, not {step!r}")
-        return [np.repeat(inputs, step.astype(int)).tolist() for step in counts]
+        return numbers_of(counts)
 
     @checked
     def step(self, spikes: ArrayLike | Sequence[int]) -> NDArray[np.float32]:
@@ -342,13 +335,20 @@ def _is_array(spikes: Any) -> bool:
     return hasattr(spikes, "shape") or hasattr(spikes, "__array__") or hasattr(spikes, "collect")
 
 
-def _trains(counts: ArrayLike) -> list[list[int]]:
+def _counts(spikes: ArrayLike) -> NDArray[Any]:
+    """Counts of spikes (steps, inputs), of an array or a table."""
+    counts, _, _ = read(spikes)
+    if counts.ndim != 2:
+        raise Error(f"spikes are an array (steps, inputs) of counts, not {counts.shape}")
+    if not _are_counts(counts):
+        raise Error("spikes are counts of spikes, 0 and above: values, as some networks take them, are not read yet")
+    return counts
+
+
+def numbers_of(counts: NDArray[Any]) -> list[list[int]]:
     """The numbers of the inputs or neurons that fire in each step, of counts (steps, inputs)."""
-    array, _, _ = read(counts)
-    if array.ndim != 2 or not _are_counts(array):
-        raise Error(f"spikes are an array (steps, inputs) of counts, not {array.shape}")
-    numbers = np.arange(array.shape[1])
-    return [np.repeat(numbers, step.astype(int)).tolist() for step in array]
+    numbers = np.arange(counts.shape[1])
+    return [np.repeat(numbers, step.astype(int)).tolist() for step in counts]
 
 
 def _are_counts(step: NDArray[Any]) -> bool:

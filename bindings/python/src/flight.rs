@@ -12,8 +12,8 @@ type Heard = (String, String, String, f64, Vec<(&'static str, Given)>);
 /// A filter: its kind, its corner or centre in Hz, and a notch's `q`.
 type Filtering = (&'static str, f32, Option<f32>);
 
-/// What the sender alone decides: bits of step numbers, the time in µs that events wait for others, and that from one full
-/// frame to the next.
+/// Settings that the sender alone decides: bits of step numbers, the time in µs that events wait for others, and the time
+/// from one full frame to the next.
 type Sends = (u8, u32, u32);
 
 /// A flight: scheme, sample type, period in µs, samples from keyframe to keyframe, error of the clock in millionths, label,

@@ -8,6 +8,7 @@ use anyhow::{Result, anyhow, bail};
 use catalogue::for_sample_type;
 use catalogue::run::{RunTime, Runs, SampleType, Settings, Visit};
 use lab::events::LinkTally;
+use lab::flight::Parts;
 use lab::values::with_kind;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
@@ -162,15 +163,16 @@ struct Link {
     label: Option<String>,
 }
 
-/// What the sender alone decides: bits of step numbers, and times in µs.
+/// Settings that the sender alone decides: bits of step numbers, and times in µs.
 #[derive(FromPyObject)]
 struct Sends {
     #[pyo3(item)]
     step_bits: u8,
     #[pyo3(item)]
     gathering: u32,
+    /// `None` for the usual time.
     #[pyo3(item)]
-    full_every: u32,
+    full_every: Option<u32>,
 }
 
 impl Sends {
@@ -179,9 +181,9 @@ impl Sends {
     fn check(&self, scheme: &catalogue::Info) -> Result<()> {
         let Self { step_bits, gathering, full_every } = *self;
         for (name, given, most) in [
-            ("step_bits", u32::from(step_bits), 4),
-            ("gathering", gathering, 1_000_000),
-            ("full_every", full_every, 10_000_000),
+            ("step_bits", step_bits.into(), Parts::MOST_STEP_BITS.into()),
+            ("gathering", gathering, Parts::LONGEST_GATHERING),
+            ("full_every", full_every.unwrap_or_default(), Parts::LONGEST_FULL_EVERY),
         ] {
             if given > most {
                 bail!("{name} {given} must lie in 0..={most}");
@@ -368,7 +370,7 @@ impl Sender {
             Transmitter::new(coding.with_step_bits(step_bits), Session::counted(session))
                 .with_fingerprint(fingerprint)
                 .with_gathering(gathering)
-                .with_full_every(full_every);
+                .with_full_every(full_every.unwrap_or(Transmitter::FULL_EVERY));
         Ok(Self(Mutex::new(Sending {
             near,
             channels: coders.len(),

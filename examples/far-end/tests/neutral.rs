@@ -95,15 +95,12 @@ fn neutral_from_a_flipped_bit_to_the_next_keyframe() {
     let mut frame = sender.sample(0.5);
     let middle = frame.len() / 2;
     frame[middle] ^= 4;
-    // What cannot be read may look like the beginning of a frame, and holds back those behind it: then a silence ends
-    // what is exact, at the latest.
-    let mut commands = vec![];
-    for bytes in [frame, sender.sample(0.8), sender.sample(1.1)] {
-        commands.extend(after(&mut far, &bytes));
+    assert_eq!(after(&mut far, &frame), Some(Command::Neutral));
+    // What cannot be read may look like the beginning of a frame, and holds back those behind it, until a silence.
+    for bytes in [sender.sample(0.8), sender.sample(1.1)] {
+        assert!(matches!(after(&mut far, &bytes), None | Some(Command::Neutral)));
     }
-    commands.extend(far.silence(SILENCE_MS));
-    assert!(!commands.is_empty(), "no frame, and no silence");
-    assert!(commands.iter().all(|command| *command == Command::Neutral), "{commands:?}");
+    far.silence(SILENCE_MS);
     assert!(matches!(after(&mut far, &sender.keyframe()), Some(Command::Damp(_))));
 }
 

@@ -24,7 +24,7 @@ pub struct FarEnd {
     receiver: Receiver<Schemes, CHANNELS>,
     sent: [Sent; REMEMBERED],
     count: usize,
-    /// What reads every frame that goes onto the line.
+    /// Reader of every frame that goes onto the line.
     watch: Reader<MAX_FRAME>,
     /// The last frame that was delivered.
     delivered: Option<Sent>,

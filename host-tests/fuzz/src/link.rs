@@ -54,7 +54,7 @@ struct Sender<'q, P: Start + 'static> {
     session: usize,
     /// By tick, what the decoders hold after the sample.
     history: HashMap<u32, [u32; CHANNELS]>,
-    /// What reads every frame that is sent.
+    /// Reader of every frame that is sent.
     watch: Reader<MAX_FRAME>,
     /// Number of the last frame, if all that was coded is in it or in those before.
     last: Option<u64>,

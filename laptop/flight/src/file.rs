@@ -26,6 +26,7 @@ use crate::{Channel, Filter, Flight, FlightError, FlightErrorKind, Parts, escape
 use catalogue::run::{Asked, SET, SampleType, Value};
 use catalogue::{Info, Kind, Parameter};
 use serde::Deserialize;
+use spikewire::link::Transmitter;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
@@ -142,7 +143,7 @@ impl Flight {
         if self.gathering > 0 {
             let _ = writeln!(text, "gathering = {} # µs", self.gathering);
         }
-        if self.full_every != Parts::FULL_EVERY {
+        if self.full_every != Transmitter::FULL_EVERY {
             let _ = writeln!(text, "full_every = {} # µs", self.full_every);
         }
         if let Some(filter) = self.filter {
@@ -219,7 +220,7 @@ fn parts(
         clock_ppm: file.clock_ppm.unwrap_or(CLOCK_PPM),
         step_bits: file.step_bits,
         gathering: file.gathering,
-        full_every: file.full_every.unwrap_or(Parts::FULL_EVERY),
+        full_every: file.full_every.unwrap_or(Transmitter::FULL_EVERY),
         filter: filter.transpose()?,
         shared,
         channels,

@@ -58,8 +58,12 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// Usual time between full frames in µs, that of a [`Transmitter`].
-    pub const FULL_EVERY: u32 = 1 << 19;
+    /// Most low bits of a step number.
+    pub const MOST_STEP_BITS: u8 = 4;
+    /// Longest time in µs that events may wait for others.
+    pub const LONGEST_GATHERING: u32 = 1_000_000;
+    /// Longest time in µs from one full frame to the next.
+    pub const LONGEST_FULL_EVERY: u32 = 10_000_000;
 }
 
 /// A flight whose parts fit together, from which sender and receiver are made.
@@ -120,9 +124,6 @@ const MOST: usize = 64;
 /// Shortest period in µs. The fastest inertial sensors take a sample in 31 µs; a shorter period was meant in ms.
 const SHORTEST: u32 = 30;
 
-/// Longest period in µs, that of a frame.
-const LONGEST: u32 = (1 << 24) - 1;
-
 impl Flight {
     /// Checks that the parts fit together, and makes a flight of them.
     ///
@@ -138,19 +139,20 @@ impl Flight {
         };
         let given = parts.period.get();
         if given < SHORTEST {
-            let kind = FlightErrorKind::Period { given, min: SHORTEST, max: LONGEST };
+            let kind =
+                FlightErrorKind::Period { given, min: SHORTEST, max: Coding::LONGEST_PERIOD };
             return Err(FlightError::new("period", kind));
         }
-        range("period", given.into(), SHORTEST.into(), LONGEST.into())?;
+        range("period", given.into(), SHORTEST.into(), Coding::LONGEST_PERIOD.into())?;
         range("channel", parts.channels.len() as f64, 1.0, MOST as f64)?;
         range("keyframe_every", parts.keyframe_every.into(), 1.0, f64::from(u32::MAX))?;
         range("clock_ppm", parts.clock_ppm.into(), 0.0, 1e5)?;
-        range("step_bits", parts.step_bits.into(), 0.0, 4.0)?;
+        range("step_bits", parts.step_bits.into(), 0.0, Parts::MOST_STEP_BITS.into())?;
         if parts.step_bits > 0 && !parts.scheme.has_first_value() {
             return Err(FlightError::new("step_bits", FlightErrorKind::NoSteps));
         }
-        range("gathering", parts.gathering.into(), 0.0, 1e6)?;
-        range("full_every", parts.full_every.into(), 0.0, 1e7)?;
+        range("gathering", parts.gathering.into(), 0.0, Parts::LONGEST_GATHERING.into())?;
+        range("full_every", parts.full_every.into(), 0.0, Parts::LONGEST_FULL_EVERY.into())?;
         let mut names = BTreeSet::new();
         for (index, channel) in parts.channels.iter_mut().enumerate() {
             let error = |name, kind| FlightError::new(name, kind).of_channel(index);

@@ -43,4 +43,4 @@ pub use rounding::Rounded;
 pub use rust::rust;
 pub use script::build;
 pub use spelling::escaped;
-pub use units::{Axis, UnitSize, unit_of_name};
+pub use units::{Axis, STANDARD_GRAVITY, UnitSize, unit_of_name};

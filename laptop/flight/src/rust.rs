@@ -1,8 +1,8 @@
 //! Generates sender and receiver of a flight in Rust.
 
-use crate::{Flight, FlightError, FlightErrorKind, Parts, UnitSize, escaped};
+use crate::{Flight, FlightError, FlightErrorKind, UnitSize, escaped};
 use catalogue::run::{Constant, Rust};
-use spikewire::link::Coding;
+use spikewire::link::{Coding, Transmitter};
 use std::fmt::{Debug, Write};
 
 /// Returns the source code of a module `flight`, for `include!`. It needs the crate `spikewire` with the feature
@@ -149,7 +149,7 @@ fn sending(flight: &Flight) -> String {
     if flight.gathering > 0 {
         let _ = write!(calls, ".with_gathering({})", flight.gathering);
     }
-    if flight.full_every != Parts::FULL_EVERY {
+    if flight.full_every != Transmitter::FULL_EVERY {
         let _ = write!(calls, ".with_full_every({})", flight.full_every);
     }
     calls

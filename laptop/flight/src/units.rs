@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 /// 1 g in m/s².
-const G: f64 = 9.806_65;
+pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// rad of 1°.
 const RADIANS: f64 = PI / 180.0;
@@ -27,8 +27,8 @@ const SIZES: [(&str, UnitSize); 10] = [
     ("m/s^2", UnitSize::Acceleration(1.0)),
     ("m/s2", UnitSize::Acceleration(1.0)),
     ("m/s/s", UnitSize::Acceleration(1.0)), // as ArduPilot writes it
-    ("g", UnitSize::Acceleration(G)),
-    ("mg", UnitSize::Acceleration(G * 1e-3)),
+    ("g", UnitSize::Acceleration(STANDARD_GRAVITY)),
+    ("mg", UnitSize::Acceleration(STANDARD_GRAVITY * 1e-3)),
 ];
 
 impl UnitSize {

@@ -11,7 +11,7 @@ use crate::tune::report::Row;
 use crate::unit::unit_of_name;
 use crate::values;
 use catalogue::run::{Asked, Given, SampleType, Words};
-use spikewire::link::{Received, Withheld};
+use spikewire::link::{self, Received, Transmitter, Withheld};
 use spikewire_flight::FlightError;
 use std::num::NonZeroU32;
 
@@ -106,7 +106,7 @@ fn of_channels(
         clock_ppm: CLOCK_PPM,
         step_bits: 0,
         gathering: 0,
-        full_every: Parts::FULL_EVERY,
+        full_every: Transmitter::FULL_EVERY,
         filter: None,
         shared: Asked::default(),
         channels,
@@ -121,10 +121,9 @@ pub(crate) const CLOCK_PPM: u32 = 20_000;
 /// # Errors
 /// Returns an error if the link cannot express the period.
 pub(crate) fn period(rate: f64) -> Result<NonZeroU32> {
-    /// The longest period of a frame, in µs.
-    const LONGEST: f64 = 16_777_215.0;
     let period = (1e6 / rate).round();
-    let period = Some(period).filter(|own| *own <= LONGEST).map(|own| own as u32);
+    let is_in_frame = period <= f64::from(link::Coding::LONGEST_PERIOD);
+    let period = is_in_frame.then_some(period as u32);
     period
         .and_then(NonZeroU32::new)
         .ok_or_else(|| RequestKind::NoPeriod.of(Given::new("rate", rate)))

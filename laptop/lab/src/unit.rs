@@ -1,7 +1,7 @@
 //! Units of a recording's channels: by a channel's name, or as the log gives them.
 
 use crate::trial::Recording;
-use spikewire_flight::{Axis, UnitSize};
+use spikewire_flight::{Axis, STANDARD_GRAVITY, UnitSize};
 
 pub use spikewire_flight::unit_of_name;
 
@@ -10,7 +10,7 @@ pub use spikewire_flight::unit_of_name;
 const FASTEST: f64 = 35.0;
 
 /// Largest acceleration, in m/s², of a channel whose name has no unit: 32 g, the largest usual range of an accelerometer.
-const HARDEST: f64 = 32.0 * 9.806_65;
+const HARDEST: f64 = 32.0 * STANDARD_GRAVITY;
 
 /// A channel of an inertial sensor whose unit is known, or taken to be the SI unit.
 #[derive(Clone, Debug, PartialEq)]

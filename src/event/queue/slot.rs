@@ -27,7 +27,7 @@ const BREAK: u32 = 2;
 const HEARTBEAT: u32 = 3;
 
 impl Slot {
-    /// All zeros, so that a queue lies in `.bss` and takes no flash.
+    /// All zeros, so that a queue that drops the oldest item, whose policy is 0, lies in `.bss` and takes no flash.
     pub(super) const EMPTY: Self = Self { tick: Tick::from_micros(0), bits: 0, rest: 0 };
 
     /// A break at this tick.

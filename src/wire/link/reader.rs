@@ -3,7 +3,7 @@
 use super::frame::{Head, MAGIC, short};
 use super::known::Known;
 use super::time::Time;
-use super::{Coding, FrameView, LinkError, MIN_FRAME, session};
+use super::{FrameView, LinkError, MIN_FRAME, session};
 
 /// A gap in the numbers: frames that are missing between two that arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,9 +22,10 @@ pub struct Received<'a> {
     /// Whether it is the first frame of the sender's session that arrived, also after 2²⁴ lost frames or more; or one of
     /// whose number or time the session's earlier frames say that it is used again.
     pub is_start: bool,
-    /// Whether this stands for bytes of which no frame can be read: a short frame that is damaged, or that goes on from
-    /// one that is missing for too long. Its frame is empty, and has the number and time of the one before. It comes once
-    /// until the next frame, so that no value is called exact meanwhile.
+    /// Whether this stands for bytes of which no frame can be read yet: a frame that is damaged, a short one that goes on
+    /// from one that is missing for too long, or bytes behind those. Its frame is empty, and has the number and time of the
+    /// one before. It comes once until the next frame, as soon as the bytes at hand end, so that no value is called exact
+    /// meanwhile.
     pub is_unread: bool,
     /// The frame.
     pub frame: FrameView<'a>,
@@ -49,8 +50,9 @@ impl Received<'_> {
 ///   back by more than 65.5 ms while numbers rise or the other way round, or by sixteen late frames in a row.
 /// - **Memory:** about `N + 210` bytes. **Work:** a checksum a frame; after damage up to one for each byte that looks like
 ///   the first of a frame.
-/// - **Delay:** none; a frame whose length was damaged, or whose end is missing, may delay the frames in the 255 bytes
-///   after it, which on a quiet link are several keyframes: see [`next_after_silence`](Self::next_after_silence).
+/// - **Delay:** none; after damage a byte that looks like the first of a frame, as one in eight does, may delay the frames
+///   in the 260 bytes after it, which on a quiet link are several keyframes: see
+///   [`next_after_silence`](Self::next_after_silence).
 ///
 /// Counters: [`lost_frames`](Self::lost_frames), [`bad_checksums`](Self::bad_checksums),
 /// [`repeated`](Self::repeated), [`late`](Self::late), [`skipped`](Self::skipped).
@@ -65,9 +67,11 @@ pub struct Reader<const N: usize> {
     sessions: [Run; 4],
     /// The frame delivered last, from which short ones go on.
     known: Option<Known>,
-    /// Whether bytes came since then that belong to no frame, and whether the receiver heard of it.
+    /// Whether bytes came since then that belong to no frame, whether some began as a short frame does, and whether the
+    /// receiver heard of it.
     is_interrupted: bool,
-    has_told: bool,
+    has_unread_short: bool,
+    has_reported: bool,
     other_version: Option<u8>,
     /// How many late frames, or frames of earlier sessions, came in a row.
     strays: u16,
@@ -162,7 +166,8 @@ impl<const N: usize> Reader<N> {
             sessions: [Run::NONE; 4],
             known: None,
             is_interrupted: false,
-            has_told: false,
+            has_unread_short: false,
+            has_reported: false,
             other_version: None,
             strays: 0,
             time: Time::from_micros(0),
@@ -212,7 +217,8 @@ impl<const N: usize> Reader<N> {
             known => *known = Some(head.known()),
         }
         self.frames = self.frames.saturating_add(1);
-        (self.is_interrupted, self.has_told, self.other_version) = (false, false, None);
+        (self.is_interrupted, self.has_unread_short, self.has_reported) = (false, false, false);
+        self.other_version = None;
         (self.time, self.checksum) = (head.time, head.checksum);
         let is_start = standing == Standing::First;
         if is_start {
@@ -322,17 +328,25 @@ impl<const N: usize> Reader<N> {
                     if needed <= N && (!is_silent || bytes.is_empty()) =>
                 {
                     if input.is_empty() {
-                        return None;
+                        return self.report_unread();
                     }
                     self.take_in(input);
                 }
-                error => {
-                    if let Some(head) = self.skip(error) {
-                        return Some(Found { head, standing: Standing::Unread });
-                    }
-                }
+                error => self.skip(error),
             }
         }
+    }
+
+    /// What stands for bytes that belong to no frame, once the bytes at hand end. Not before: a frame behind them, if it is
+    /// there already, says by its number whether any is missing.
+    #[inline]
+    fn report_unread(&mut self) -> Option<Found> {
+        if !self.is_interrupted || self.has_reported {
+            return None;
+        }
+        let head = Head::unread(self.known.as_ref()?);
+        self.has_reported = true;
+        Some(Found { head, standing: Standing::Unread })
     }
 
     /// Passes over a frame that is not delivered.
@@ -343,7 +357,7 @@ impl<const N: usize> Reader<N> {
             &mut self.repeated
         } else {
             // Where short frames cannot be read either, their sender is likely another start.
-            let weight = if self.has_told && !head.is_short() { RETURN / 2 } else { 1 };
+            let weight = if self.has_unread_short && !head.is_short() { RETURN / 2 } else { 1 };
             self.strays = self.strays.saturating_add(weight);
             &mut self.late
         };
@@ -351,10 +365,10 @@ impl<const N: usize> Reader<N> {
         self.start = self.start.wrapping_add(head.length());
     }
 
-    /// Skips bytes that begin no frame, up to the next that may. Returns what stands for them, if it was not told yet.
+    /// Skips bytes that begin no frame, up to the next that may.
     #[cold]
     #[inline(never)]
-    fn skip(&mut self, error: LinkError) -> Option<Head> {
+    fn skip(&mut self, error: LinkError) {
         match error {
             LinkError::Checksum { .. } => {
                 self.bad_checksums = self.bad_checksums.saturating_add(1);
@@ -364,19 +378,13 @@ impl<const N: usize> Reader<N> {
         }
         self.is_interrupted = true;
         let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
-        let is_short = bytes.first().is_some_and(|&first| short::begins_with(first));
+        self.has_unread_short |= bytes.first().is_some_and(|&first| short::begins_with(first));
         let is_known = self.known.is_some();
         let begins = |&byte: &u8| byte == MAGIC || is_known && short::begins_with(byte);
         let next = bytes.iter().skip(1).position(begins);
         let skipped = next.map_or(bytes.len(), |next| next.wrapping_add(1));
         self.start = self.start.wrapping_add(skipped);
         self.skipped = self.skipped.saturating_add(skipped as u32);
-        if !is_short || self.has_told {
-            return None;
-        }
-        self.has_told = true;
-        let nothing = Known::nothing(Coding::for_channels(1, 1));
-        Some(Head::unread(self.known.as_ref().unwrap_or(&nothing)))
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 
 use core::ops::RangeInclusive;
 
-use super::writer::Draft;
+use super::writer::{self, Draft};
 use super::{Coding, Framer, LinkError, Part, Session, join};
 use crate::error::unwrap;
 use crate::event::{Bank, Item, Schemes, Source, Taken, Tick};
@@ -54,6 +54,9 @@ pub struct Transmitter {
 }
 
 impl Transmitter {
+    /// Usual time in µs (0.52 s) from one full frame to the next, if [`with_full_every`](Self::with_full_every) sets no other.
+    pub const FULL_EVERY: u32 = writer::FULL_EVERY;
+
     /// A transmitter for the items of this bank, sampled every `period` µs (0 counts as 1), before the first frame of
     /// this session. It sends the bank's [fingerprint](Bank::fingerprint). If another bank shares the link, use
     /// [`for_banks`](Self::for_banks).

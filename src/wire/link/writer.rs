@@ -36,10 +36,10 @@ pub struct Coding {
     pub step_bits: u8,
 }
 
-/// The longest period, which takes 3 bytes.
-const LONGEST: u32 = (1 << 24) - 1;
-
 impl Coding {
+    /// The longest period in µs (16.8 s), which takes 3 bytes of a frame.
+    pub const LONGEST_PERIOD: u32 = (1 << 24) - 1;
+
     /// A coding for channels of one neuron each, sampled by a timer every `period` µs (0 counts as 1).
     pub const fn for_channels(channels: u16, period: u32) -> Self {
         let period = match NonZeroU32::new(period) {
@@ -67,8 +67,8 @@ impl Coding {
         const fn at_most(most: u8, bits: u8) -> u8 {
             if bits > most { most } else { bits }
         }
-        let period = match NonZeroU32::new(LONGEST) {
-            Some(longest) if self.period.get() > LONGEST => longest,
+        let period = match NonZeroU32::new(Self::LONGEST_PERIOD) {
+            Some(longest) if self.period.get() > Self::LONGEST_PERIOD => longest,
             _ => self.period,
         };
         Self {
@@ -148,7 +148,7 @@ pub struct Framer {
 }
 
 /// A frame is full that comes this many µs (0.52 s) after the last full one, or later.
-const FULL_EVERY: u32 = 1 << 19;
+pub(super) const FULL_EVERY: u32 = 1 << 19;
 
 /// So many frames are full at the beginning of a session.
 const FULL_FIRST: u8 = 4;

@@ -29,7 +29,7 @@ static FORCE: Code = Code::new(205);
 const SCHEMES: [&Code; 6] = [&FORCE, &FORCE, &FORCE, &RATE, &RATE, &RATE];
 
 static EVENTS: EventQueue<512> = EventQueue::new(Overflow::DropOldest);
-/// What main has set up, until the interrupt takes it.
+/// Setup that main made, until the interrupt takes it.
 static SAMPLER: Mutex<RefCell<Option<Sampler>>> = Mutex::new(RefCell::new(None));
 
 const MPU6050: u8 = 0x68;

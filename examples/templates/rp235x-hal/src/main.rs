@@ -57,7 +57,7 @@ const GATHER: u32 = 5_000_u32.div_ceil(flight::PERIOD);
 type Flown = Station<Sensor, [&'static flight::Code; flight::CHANNELS], { flight::CHANNELS }>;
 type Alarm = Alarm0<CopyableTimer0>;
 type Own = (Flown, Alarm, Instant);
-/// What main has set up, until the interrupt takes it.
+/// Setup that main made, until the interrupt takes it.
 static READY: Mutex<RefCell<Option<Own>>> = Mutex::new(RefCell::new(None));
 
 #[interrupt]

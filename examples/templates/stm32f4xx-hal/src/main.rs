@@ -44,7 +44,7 @@ const GATHER: u32 = 5_000_u32.div_ceil(flight::PERIOD);
 
 type Flown = Station<Sensor, [&'static flight::Code; flight::CHANNELS], { flight::CHANNELS }>;
 type Own = (Flown, CounterUs<TIM2>);
-/// What main has set up, until the interrupt takes it.
+/// Setup that main made, until the interrupt takes it.
 static READY: Mutex<RefCell<Option<Own>>> = Mutex::new(RefCell::new(None));
 
 #[interrupt]

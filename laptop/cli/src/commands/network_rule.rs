@@ -41,7 +41,7 @@ impl RuleOptions {
 }
 
 /// Name of the reset mode that has the alias `zero`.
-const ZERO: &str = "to-value";
+const ZERO: &str = Reset::ToValue.name();
 
 type Choices<T> = [(&'static str, T, &'static str)];
 
@@ -71,27 +71,29 @@ const FRAMEWORKS: [(&str, Framework, &str); 6] = [
 
 const RESETS: [(&str, Reset, &str); 7] = [
     (ZERO, Reset::ToValue, "sets the potential to v_reset, or 0, at once"),
-    ("to-value-late", Reset::ToValueLate, "sets it a step late"),
-    ("to-value-held", Reset::ToValueHeld, "holds it there through the next step"),
-    ("subtract", Reset::Subtract, "subtracts the threshold at once"),
-    ("subtract-late", Reset::SubtractLate, "subtracts it a step late"),
-    ("subtract-no-delay", Reset::SubtractNoDelay, "as snnTorch with reset_delay=False"),
-    ("none", Reset::NoReset, "leaves the potential as it is"),
+    (Reset::ToValueLate.name(), Reset::ToValueLate, "sets it a step late"),
+    (Reset::ToValueHeld.name(), Reset::ToValueHeld, "holds it there through the next step"),
+    (Reset::Subtract.name(), Reset::Subtract, "subtracts the threshold at once"),
+    (Reset::SubtractLate.name(), Reset::SubtractLate, "subtracts it a step late"),
+    (Reset::SubtractNoDelay.name(), Reset::SubtractNoDelay, "as snnTorch with reset_delay=False"),
+    (Reset::NoReset.name(), Reset::NoReset, "leaves the potential as it is"),
 ];
 
-const FIRES: [(&str, Fires, &str); 2] =
-    [("above", Fires::Above, "v > threshold"), ("at", Fires::At, "v >= threshold")];
+const FIRES: [(&str, Fires, &str); 2] = [
+    (Fires::Above.name(), Fires::Above, "v > threshold"),
+    (Fires::At.name(), Fires::At, "v >= threshold"),
+];
 
 const DECAYS: [(&str, Decay, &str); 2] = [
-    ("euler", Decay::Euler, "1 - dt / tau"),
-    ("exponential", Decay::Exponential, "e to the -dt / tau"),
+    (Decay::Euler.name(), Decay::Euler, "1 - dt / tau"),
+    (Decay::Exponential.name(), Decay::Exponential, "e to the -dt / tau"),
 ];
 
 const CURRENTS: [(&str, Current, &str); 3] = [
-    ("new", Current::New, "that of this step"),
-    ("old", Current::Old, "that of the step before"),
+    (Current::New.name(), Current::New, "that of this step"),
+    (Current::Old.name(), Current::Old, "that of the step before"),
     (
-        "whole",
+        Current::Whole.name(),
         Current::Whole,
         "that of this step, to which a spike adds its whole weight: LIFCell of Norse",
     ),

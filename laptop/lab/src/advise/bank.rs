@@ -15,6 +15,7 @@ use crate::watch::{Progress, Watch};
 use catalogue::run::{Asked, Value};
 use catalogue::{Kind, Parameter, Search};
 use serde::Serialize;
+use spikewire::link::Transmitter;
 
 /// Sample rate of the slowest control loop that the simulator flew, in Hz.
 const SLOWEST: f64 = 250.0;
@@ -370,7 +371,7 @@ fn bank(
         clock_ppm: CLOCK_PPM,
         step_bits: if heals { STEP_BITS } else { 0 },
         gathering: 0,
-        full_every: Parts::FULL_EVERY,
+        full_every: Transmitter::FULL_EVERY,
         filter: heard[0].0.filter(scheme, request.sample).map(|own| own.filter),
         shared,
         channels: parts,

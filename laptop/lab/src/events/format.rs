@@ -139,7 +139,7 @@ impl FromStr for Format {
                 let period = settings.number("period", 1_000)?;
                 let jitter: u8 = settings.number("jitter", 0)?;
                 let step_bits: u8 = settings.number("step-bits", 0)?;
-                if !(1..1 << 24).contains(&period) || jitter > 15 || step_bits > 4 {
+                if !(1..=Coding::LONGEST_PERIOD).contains(&period) || jitter > 15 || step_bits > 4 {
                     return Err(EventsKind::PeriodOrJitter { text: text.to_owned() }.into());
                 }
                 let coding = Coding::for_channels(channels, period);

@@ -2,6 +2,7 @@
 
 use crate::error::room;
 use catalogue::kinds;
+use spikewire::link::Coding;
 use spikewire_cameras::format::FormatError;
 
 kinds! {
@@ -14,7 +15,8 @@ kinds! {
         NotABit { key: String, number: u32 } => ("{key}={number} must be 0 or 1"),
         TakesNoKey { format: String, key: String } => ("{format} takes no {key}="),
         PeriodOrJitter { text: String } => (
-            "{text}: the period must be 1 to 16777215 µs, the jitter at most 15 bits, step-bits at most 4"
+            "{text}: the period must be 1 to {} µs, the jitter at most 15 bits, step-bits at most 4",
+            Coding::LONGEST_PERIOD
         ),
         Step { text: String } => ("{text}: the step must be above 0 µs"),
         HalfASize => ("width= and height= go together, and are 1 or more"),

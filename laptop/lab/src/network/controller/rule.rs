@@ -191,25 +191,18 @@ impl Asked {
             settings.push(format!("{} {}", spell("reset"), resets.join(",")));
         }
         if let Some(fires) = self.fires {
-            let fires = if fires == Fires::At { "at" } else { "above" };
-            settings.push(format!("{} {fires}", spell("fires")));
+            settings.push(format!("{} {}", spell("fires"), fires.name()));
         }
         let says = self.framework.map(Framework::says).unwrap_or_default();
         if let Some(decay) = self.decay
             && says.decay != self.decay
         {
-            let decay = if decay == Decay::Euler { "euler" } else { "exponential" };
-            settings.push(format!("{} {decay}", spell("decay")));
+            settings.push(format!("{} {}", spell("decay"), decay.name()));
         }
         if let Some(current) = self.current
             && says.current != self.current
         {
-            let current = match current {
-                Current::New => "new",
-                Current::Old => "old",
-                Current::Whole => "whole",
-            };
-            settings.push(format!("{} {current}", spell("current")));
+            settings.push(format!("{} {}", spell("current"), current.name()));
         }
         if let Some(dt) = self.dt
             && says.dt != self.dt
@@ -285,6 +278,37 @@ impl Asked {
     }
 }
 
+impl Fires {
+    /// Returns the name by which the user selects the comparison.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Above => "above",
+            Self::At => "at",
+        }
+    }
+}
+
+impl Decay {
+    /// Returns the name by which the user selects the formula.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Euler => "euler",
+            Self::Exponential => "exponential",
+        }
+    }
+}
+
+impl Current {
+    /// Returns the name by which the user selects the current.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::New => "new",
+            Self::Old => "old",
+            Self::Whole => "whole",
+        }
+    }
+}
+
 impl Reset {
     /// Returns the name by which the user selects the reset.
     pub const fn name(self) -> &'static str {
@@ -332,5 +356,39 @@ impl Display for Rule {
             Reset::NoReset => "keeps its potential",
         };
         write!(f, "fires {fires} its threshold, and then {reset}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Current, Decay, Fires, Framework, Reset};
+    use serde::de::DeserializeOwned;
+
+    fn reads<T: DeserializeOwned + PartialEq>(name: &str, value: &T) -> bool {
+        serde_json::from_value::<T>(name.into()).is_ok_and(|read| read == *value)
+    }
+
+    /// A network's file and the Python package read the names by which the command line selects a part of the rule.
+    #[test]
+    fn files_read_the_names_of_the_command_line() {
+        use {Framework as W, Reset as R};
+        for framework in [W::SnnTorch, W::Norse, W::SpikingJelly, W::Rockpool, W::Sinabs, W::Nir] {
+            assert!(reads(framework.name(), &framework), "{framework:?}");
+        }
+        let subtracting = [R::Subtract, R::SubtractLate, R::SubtractNoDelay];
+        for reset in
+            [R::ToValue, R::ToValueLate, R::ToValueHeld, R::NoReset].iter().chain(&subtracting)
+        {
+            assert!(reads(reset.name(), reset), "{reset:?}");
+        }
+        for fires in [Fires::Above, Fires::At] {
+            assert!(reads(fires.name(), &fires), "{fires:?}");
+        }
+        for decay in [Decay::Euler, Decay::Exponential] {
+            assert!(reads(decay.name(), &decay), "{decay:?}");
+        }
+        for current in [Current::New, Current::Old, Current::Whole] {
+            assert!(reads(current.name(), &current), "{current:?}");
+        }
     }
 }
