@@ -36,13 +36,13 @@
 //! | | [`Bsa`](rate::Bsa) (BSA) | smooth signals, with a filter of unit sum |
 //! | | [`BsaToolbox`](rate::BsaToolbox) | BSA as in the paper's tables |
 //! | | [`SigmaDelta`](rate::SigmaDelta) | a mean from one neuron |
-//! | | `Bernoulli` | a mean by chance (feature `rand`) |
+//! | | `Bernoulli` | a mean by chance (feature `rand-010`) |
 //! | | [`WeightedBurst`](rate::WeightedBurst) | a mean, with few spikes while it is low |
 //! | | [`IntegrateAndFire`](rate::IntegrateAndFire) (IF, LIF) | a mean, and an integral that never drifts |
 //! | [`population`] | [`Position`](population::Position) | a value, dense where it matters |
 //! | | [`Gaussian`](population::Gaussian) (GRF) | a value over an even range |
 //! | | [`Slots`](population::Slots) | a value finer than the neurons, by spike time |
-//! | | `Probabilistic` | a value by chance (feature `rand`) |
+//! | | `Probabilistic` | a value by chance (feature `rand-010`) |
 //! | | [`Gaussian::companded`](population::Gaussian::companded), [`with_widths`](population::Gaussian::with_widths) | a value, finer where it is most of the time |
 //! | | [`NonLinearSlots`](population::NonLinearSlots) | the same, with finer values by spike time |
 //! | | [`RankOrder`](population::RankOrder) | a value finer than the neurons, by who fires first |
@@ -64,17 +64,17 @@
 //! |---|---|
 //! | `fixed` | `FixedI16` and `FixedI32` with any fraction as [`Sample`]s |
 //! | `alloc` | `dynamic`: any filter length, window and number of neurons at run time, on the heap; not for firmware |
-//! | `rand` | probabilistic and Bernoulli spiking, from any `rand_core` generator |
+//! | `rand-010` | probabilistic and Bernoulli spiking, from any `rand_core` generator |
 //! | `defmt` | `defmt::Format` on public data |
 //! | `serde` | `Serialize` on public data; `Deserialize` where nothing has to be checked, and on [states](Encoder::with_state) |
 //! | `queue` | bounded queues from interrupts to main; `EventQueue` needs a `critical-section` implementation in the program |
-//! | `heapless` | `heapless::Vec`, `Deque`, `spsc` and `mpmc` as ends of queues, by way of `Counted` |
+//! | `heapless-09` | `heapless::Vec`, `Deque`, `spsc` and `mpmc` as ends of queues, by way of `Counted` |
 //! | `portable-atomic` | `heapless::mpmc` on a Cortex-M0; needs a `critical-section` implementation in the program |
 //! | `link` | `link`: framed events over any byte transport |
 //! | `link-small` | the same with 960 bytes of tables less, and two look-ups a byte for the checksum in place of one |
 //! | `embedded-hal` | [`out`]: SPI |
 //! | `async` | [`out`]: asynchronous SPI; waiting on a queue |
-//! | `embedded-io` | [`out`]: UART and USB serial, over ports of `embedded-io` 0.7 |
+//! | `embedded-io-07` | [`out`]: UART and USB serial, over ports of `embedded-io` 0.7 |
 //! | `embedded-io-06` | [`out`]: the same over ports of `embedded-io` 0.6 |
 #![no_std]
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -105,7 +105,7 @@ pub use event::{
     Consumer, EventQueue, Overflow, Queue, QueueView, Refused, SpscConsumer, SpscProducer,
     SpscQueue,
 };
-#[cfg(feature = "heapless")]
+#[cfg(feature = "heapless-09")]
 pub use event::{Container, Counted, Element};
 pub use num::{Sample, SampleKind};
 #[cfg(feature = "alloc")]

@@ -4,7 +4,7 @@
 mod address;
 mod bank;
 mod bins;
-#[cfg(feature = "heapless")]
+#[cfg(feature = "heapless-09")]
 mod counted;
 mod item;
 mod keyframe;
@@ -23,7 +23,7 @@ pub use bank::Bank;
 #[cfg(feature = "link")]
 pub(crate) use bank::bank_fingerprint;
 pub use bins::{Bins, StepOver};
-#[cfg(feature = "heapless")]
+#[cfg(feature = "heapless-09")]
 pub use counted::{Container, Counted, Element};
 pub use item::{Item, Taken};
 pub use keyframe::Keyframe;

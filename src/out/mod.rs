@@ -6,7 +6,7 @@
 mod error;
 #[cfg(feature = "embedded-io-06")]
 mod io06;
-#[cfg(feature = "embedded-io")]
+#[cfg(feature = "embedded-io-07")]
 mod serial;
 #[cfg(feature = "embedded-hal")]
 mod spi;
@@ -15,7 +15,7 @@ pub use crate::wire::Batch;
 pub use error::SinkError;
 #[cfg(feature = "embedded-io-06")]
 pub use io06::{Io06, Io06Error};
-#[cfg(feature = "embedded-io")]
+#[cfg(feature = "embedded-io-07")]
 pub use serial::SerialSink;
 #[cfg(feature = "async")]
 pub use spi::AsyncSpiSink;

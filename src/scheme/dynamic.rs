@@ -17,7 +17,7 @@
 //! # Ok::<(), spikewire::ConfigError>(())
 //! ```
 
-#[cfg(feature = "rand")]
+#[cfg(feature = "rand-010")]
 pub use super::population::dynamic::Probabilistic;
 pub use super::population::dynamic::{LEVELS, NEURONS, Position, Slots};
 pub use super::population::dynamic_nonlinear::NonLinearSlots;

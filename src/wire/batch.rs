@@ -37,7 +37,7 @@ pub trait Batch {
     fn fill(&mut self, events: &mut impl Source, bytes: &mut [u8]) -> usize;
 
     /// [Fills](Self::fill) the room that is left in a vector of `heapless`, and returns how many bytes it appended.
-    #[cfg(feature = "heapless")]
+    #[cfg(feature = "heapless-09")]
     fn fill_vec(&mut self, events: &mut impl Source, bytes: &mut heapless::VecView<u8>) -> usize {
         let before = bytes.len();
         let capacity = bytes.capacity();

@@ -279,10 +279,10 @@ impl<S: Sample, const M: usize> Scheme for Slots<S, M> {
     }
 }
 
-#[cfg(feature = "rand")]
+#[cfg(feature = "rand-010")]
 pub use random::Probabilistic;
 
-#[cfg(feature = "rand")]
+#[cfg(feature = "rand-010")]
 mod random {
     use core::marker::PhantomData;
     use core::ops::RangeInclusive;

@@ -1,10 +1,10 @@
 //! Gaussian receptive fields of equal width, computed with a table of distances instead of exponentials.
 
-#[cfg(feature = "rand")]
+#[cfg(feature = "rand-010")]
 use core::hint::black_box;
 use core::ops::RangeInclusive;
 
-#[cfg(feature = "rand")]
+#[cfg(feature = "rand-010")]
 use super::FiredNeurons;
 use super::centres::{Centres, even_centre};
 use crate::error::{positive, tri};
@@ -143,7 +143,7 @@ impl<S: Sample, const M: usize, const N: usize> ReceptiveFields<S, M, N> {
     }
 
     /// The mean of the centres of the neurons that fired; `None` if none did.
-    #[cfg(feature = "rand")]
+    #[cfg(feature = "rand-010")]
     #[inline]
     pub(super) fn mean_of(&self, neurons: &FiredNeurons<M>) -> Option<S> {
         // Hidden from the compiler, which would otherwise add up the centres of all neurons and drop most sums, as

@@ -37,6 +37,6 @@ pub use mean::{
     Average, Averaging, IntegrateAndFire, IntegrateAndFireState, MeanState, PotentialState,
     SigmaDelta, SigmaDeltaState, WeightedBurst, WeightedBurstState, Window,
 };
-#[cfg(feature = "rand")]
+#[cfg(feature = "rand-010")]
 pub use mean::{Bernoulli, BernoulliState};
 pub use threshold_hough::ThresholdHough;

@@ -3,7 +3,7 @@
 //! What their decoders share is here: a range, and how the mean of spikes is taken.
 
 mod averaging;
-#[cfg(feature = "rand")]
+#[cfg(feature = "rand-010")]
 mod bernoulli;
 mod burst;
 mod integrate;
@@ -11,7 +11,7 @@ mod range;
 mod sigma_delta;
 
 pub use averaging::{Average, Averaging, MeanState, Window};
-#[cfg(feature = "rand")]
+#[cfg(feature = "rand-010")]
 pub use bernoulli::{Bernoulli, BernoulliState};
 pub use burst::{WeightedBurst, WeightedBurstState};
 pub use integrate::{IntegrateAndFire, IntegrateAndFireState, PotentialState};
