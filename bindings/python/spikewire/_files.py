@@ -83,9 +83,11 @@ def read(
     skip_non_finite: bool = False,
     accept_cut: bool = False,
 ) -> Log:
-    """Channels of a flight log or table, by name; all of a table unless some are named: :class:`Log`.
+    """Channels of a flight log or table, by name: :class:`Log`. Unless some are named, all of a table, and of a log the
+    gyroscope and the accelerometer that flew.
 
-    Of a log, `topic` and one `field` of it or several. `time` is the column of times and `time_unit` ``"s"``, ``"ms"``,
+    Names may be patterns such as ``"gyro_*"``. Those of a log are ``"sensor_combined.gyro_rad[0]"``, or `topic` and one
+    `field` of it or several. `time` is the column of times and `time_unit` ``"s"``, ``"ms"``,
     ``"us"`` or ``"ns"``, both found unless given; `header` is the line of a table that names its columns, from 1, where it
     is not found. `rate` says how many samples a second there are, where the times do not. Steps in time above `gap` usual
     ones are noted. `skip_non_finite` goes on over values that are missing, and `accept_cut`

@@ -10,7 +10,7 @@ use lab::advise::AdviseRequest;
 use lab::coding::Coding;
 use lab::emit::Codec;
 use lab::events::PixelEvent;
-use lab::input::{CHUNK, ChannelOptions, Chunk, Clock, InputOptions, TableKind};
+use lab::input::{CHUNK, ChannelOptions, Chunk, Clock, InputOptions, TableKind, Unnamed};
 use lab::plot::Picture;
 use lab::scheme::Scheme;
 use lab::score::Figures;
@@ -378,7 +378,7 @@ fn parsed<T: FromStr<Err = lab::Error>>(
 pub(crate) fn read<'py>(py: Python<'py>, path: &str, keywords: Input) -> PyResult<Read<'py>> {
     let done = work::detached(py, true, || {
         let options = InputOptions { input: path.into(), channel: keywords.channel()? };
-        let mut source = options.or_all()?.open()?;
+        let mut source = options.or(Unnamed::All).open()?;
         let mut all = Chunk::default();
         source.next(&mut all)?;
         // As in the program, the first piece tells the usual step.

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use flight_logs::{Kind, Packing};
 use lab::dataset::{self, ChannelsOf, Found, Split};
 use lab::flight::Flight;
-use lab::input::{self, Delimiter, TimeUnit, above_zero};
+use lab::input::{self, Delimiter, TimeUnit, Unnamed, above_zero};
 use std::fs;
 use std::io::{self, BufRead, Cursor, Read};
 use std::path::{Path, PathBuf};
@@ -38,18 +38,22 @@ pub(crate) struct InputOptions {
 /// Options that choose channels of a recording and say how to read them.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct ChannelOptions {
-    /// Column of a CSV table, by name or by number from 1; `encode` takes several
-    #[arg(long, help_heading = "Input")]
-    column: Vec<String>,
-    /// Several columns at once: `gyro_x,gyro_y,gyro_z`, or `all`; in a log, names have the form `TOPIC.FIELD`
+    /// Channels to read: columns of a table by name or by number from 1, fields of a log as `TOPIC.FIELD`, or as `FIELD`
+    /// if one topic has it. Patterns are taken: `gyro_*`, `gyro_rad[*]`, `gyro_rad[0..3]`; `all` is all columns of a
+    /// table. Default, where several channels are taken: the gyroscope and the accelerometer that flew. `--channel` and
+    /// `--columns` are other names of the option
     #[arg(
-        long,
-        visible_alias = "channel",
+        long = "channels",
+        alias = "columns",
+        alias = "channel",
         value_delimiter = ',',
         value_name = "NAMES",
         help_heading = "Input"
     )]
     columns: Vec<String>,
+    /// One channel, whose name may have a comma, as --channels takes it
+    #[arg(long, value_name = "NAME", hide_short_help = true, help_heading = "Input")]
+    column: Vec<String>,
     /// Column of a table, or field of a log such as `header.stamp`, that holds the time. Default in a table: the column
     /// whose name means time in tables of Betaflight, `ArduPilot`, PX4, ROS or pandas; in a log: the sensor's own stamp
     /// such as `header.stamp`, `timestamp_sample` or `time_boot_ms`, and without one the time at which a message was
@@ -66,14 +70,20 @@ pub(crate) struct ChannelOptions {
     /// Line of a table that holds the names of the columns, counted from 1; default: found where it is sure
     #[arg(long, value_name = "LINE", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Input")]
     header: Option<u64>,
-    /// Topic of a log; `:1` after it selects the second instance of a sensor
-    #[arg(long, help_heading = "Input")]
+    /// Topic of a log, for --channels without it; `:1` after it selects the second instance of a sensor
+    #[arg(long, hide_short_help = true, help_heading = "Input")]
     topic: Option<String>,
-    /// Field of the topic, such as `gyro_rad[0]` or `angular_velocity.x`; `encode` takes several
-    #[arg(long, help_heading = "Input")]
+    /// Field of the topic, such as `gyro_rad[0]`: `--topic T --field F` is an older way to write `--channels T.F`
+    #[arg(long, hide_short_help = true, help_heading = "Input")]
     field: Vec<String>,
-    /// Several fields of the topic at once: `gyro_rad[0],gyro_rad[1]`
-    #[arg(long, value_delimiter = ',', value_name = "NAMES", help_heading = "Input")]
+    /// Several fields of the topic: `gyro_rad[0],gyro_rad[1]`
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "NAMES",
+        hide_short_help = true,
+        help_heading = "Input"
+    )]
     fields: Vec<String>,
     /// Sample rate in Hz, for a recording without times, or with times that do not tell it, such as those of arrival
     #[arg(long, value_parser = above_zero, help_heading = "Input")]
@@ -254,6 +264,7 @@ impl ChannelOptions {
             gap: options.gap,
             skip_non_finite: options.skip_non_finite,
             accept_cut: options.accept_cut,
+            unnamed: Unnamed::One,
         };
         input::InputOptions { input: input.to_owned(), channel }
     }

@@ -78,7 +78,7 @@ Options:
 
 Examples:
   spikewire advise flight.csv --loop-bandwidth 4 -o flight.toml
-  spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv
+  spikewire encode --scheme sf --threshold 0.1 --channels gyro_x flight.csv
 
 `spikewire COMMAND -h` lists a command's options, and `--help` explains them.
 ";

@@ -9,7 +9,10 @@ use std::io;
 
 /// Returns the command-line option of a setting: `--max-rmse` for `max_rmse`.
 pub(crate) fn option(name: &str) -> String {
-    format!("--{}", name.replace('_', "-"))
+    match name {
+        "columns" => "--channels".to_owned(),
+        name => format!("--{}", name.replace('_', "-")),
+    }
 }
 
 /// Formats an error and its causes, separated by colons.
@@ -31,14 +34,33 @@ pub(crate) fn of(error: &Error) -> String {
 
 /// Formats an error of the library `lab`. The text ends with a command that helps, if one is known.
 pub(crate) fn of_lab(error: &lab::Error) -> String {
-    let help = match *error.kind {
-        ErrorKind::Log(LogKind::NeedsChannel) => "; `spikewire info` lists them",
-        ErrorKind::Setting(catalogue::run::ErrorKind::NeedsSignal { .. }) => {
-            "; `spikewire tune` writes it"
+    let help = match &*error.kind {
+        ErrorKind::Log(LogKind::NeedsChannel { example: Some(example), .. }) => {
+            format!("; `spikewire info` lists them; to read this one:\n  {}", line(example))
         }
-        _ => "",
+        ErrorKind::Setting(catalogue::run::ErrorKind::NeedsSignal { .. }) => {
+            "; `spikewire tune` writes it".to_owned()
+        }
+        _ => String::new(),
     };
-    error.spelled(option).to_string() + help
+    error.spelled(option).to_string() + &help
+}
+
+/// Returns the command line of this run with a channel chosen.
+fn line(channel: &str) -> String {
+    let mut words = vec!["spikewire".to_owned()];
+    words.extend(std::env::args().skip(1).map(|argument| quoted(&argument)));
+    words.push(format!("--channels {}", quoted(channel)));
+    words.join(" ")
+}
+
+/// Returns an argument as a shell takes it, in quotes if necessary.
+fn quoted(argument: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "-_./:=,@%+".contains(letter);
+    if !argument.is_empty() && argument.chars().all(is_plain) {
+        return argument.to_owned();
+    }
+    format!("'{}'", argument.replace('\'', r"'\''"))
 }
 
 /// Returns whether the error means that the reader of our output closed the pipe.
@@ -55,9 +77,12 @@ pub(crate) fn notes<W: Worded>(notes: &[W]) -> Vec<String> {
 
 /// Prints notes on a log on standard error, one on each line. If the log is one of several, its name comes first.
 pub(crate) fn tell_of(log: Option<&str>, notes: &[String]) {
-    let of = log.map_or(String::new(), |log| format!("{log}: "));
     for note in notes {
-        eprintln!("{of}{note}");
+        match log {
+            // The note on the channels that were found begins with the log's name.
+            Some(log) if !note.starts_with(&format!("{log}: ")) => eprintln!("{log}: {note}"),
+            _ => eprintln!("{note}"),
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{events, flight, flight_logs, good, ran, refused};
+use common::{events, file, flight, flight_logs, good, ran, refused, spikewire};
+use flight_logs::made::{Kind, blackbox, dataflash, dataflash_text, tlog};
 
 const COLUMNS: [&str; 6] = ["gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"];
 
@@ -74,4 +75,157 @@ fn a_parameter_may_have_a_value_for_each_channel() {
     assert_eq!(spikes.count(), alone("a", "0.5") + alone("b", "1.5"));
     let words = ["--threshold has 2 values, one a channel, for 1 channel"];
     refused("encode --scheme sf --threshold 1,2 --column a -", table, &words);
+}
+
+const SF: &str = "--scheme sf --threshold 0.05";
+
+/// Returns the line of a file of spikes that begins with `# KEY=`.
+fn origin(spikes: &str, key: &str) -> String {
+    let start = format!("# {key}=");
+    spikes.lines().find_map(|line| line.strip_prefix(&start)).unwrap_or_default().to_owned()
+}
+
+#[test]
+fn the_sensor_that_flew_is_found_in_every_format() {
+    let [log, _] = flight_logs().map(|log| log.display().to_string());
+    let six = "gyro_rad[0],gyro_rad[1],gyro_rad[2],accelerometer_m_s2[0],accelerometer_m_s2[1],accelerometer_m_s2[2]";
+    let ran = ran!("encode {SF} {log}");
+    assert_eq!(origin(&ran.output, "topic"), "sensor_combined");
+    assert_eq!(origin(&ran.output, "field"), six);
+    let reads = format!(
+        "{log}: reads gyro_rad[0..3] (rad/s), accelerometer_m_s2[0..3] (m/s²) of sensor_combined, 199 Hz"
+    );
+    let line = ran.stderr.lines().find(|line| line.contains(": reads ")).unwrap();
+    assert!(line.starts_with(&reads) && line.ends_with("; --channels chooses others"), "{line}");
+    let named = ran!("encode {SF} --topic sensor_combined --fields {six} {log}");
+    assert_eq!(named.output, ran.output);
+    assert!(!named.stderr.contains(": reads "), "{}", named.stderr);
+
+    let gyros = "gyroADC[0],gyroADC[1],gyroADC[2]";
+    for (name, bytes, topic, fields, words) in [
+        ("a.bbl", blackbox(), "main", gyros, "gyroADC[0..3] (deg/s) of main, 4000 Hz"),
+        ("a.bin", dataflash(), "IMU", "GyrX,GyrY", "GyrX, GyrY (rad/s) of IMU, 200 Hz; other"),
+        ("a.log", dataflash_text().into_bytes(), "IMU", "GyrX,GyrY", "of IMU, 200 Hz; other"),
+        (
+            "a.tlog",
+            tlog(),
+            "RAW_IMU",
+            "xgyro,ygyro,zgyro,xacc,yacc,zacc",
+            "xgyro, ygyro, zgyro (mrad/s), xacc, yacc, zacc (mg) of RAW_IMU",
+        ),
+    ] {
+        let (_directory, path) = file(name, bytes);
+        let ran = ran!("encode {SF} --skip-non-finite {path}");
+        assert_eq!(origin(&ran.output, "topic"), topic, "{name}");
+        assert_eq!(origin(&ran.output, "field"), fields, "{name}");
+        assert!(ran.stderr.contains(&format!("{path}: reads ")), "{name}: {}", ran.stderr);
+        assert!(ran.stderr.contains(words), "{name}: {}", ran.stderr);
+    }
+
+    let table = "time_us,battery,gyro_x_dps,gyro_y_dps,gyro_z_dps\n0,7,1,2,3\n2000,7,2,3,4\n";
+    let ran = good(&format!("encode {SF} -"), table);
+    assert_eq!(origin(&ran.output, "column"), "gyro_x_dps,gyro_y_dps,gyro_z_dps");
+    let words = "reads gyro_x_dps, gyro_y_dps, gyro_z_dps (deg/s), 500 Hz in the first rows; ";
+    assert!(ran.stderr.contains(words), "{}", ran.stderr);
+}
+
+/// `advise` without an option reads the sensor that flew; of a table in which no name tells one, all columns.
+#[test]
+fn advice_on_a_log_needs_no_channels() {
+    let [log, _] = flight_logs().map(|log| log.display().to_string());
+    let ran = ran!("advise {log} --evaluations 2 --json");
+    let report = ran.log();
+    let names: Vec<&str> = report["channels"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|own| own["look"]["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names[..2], ["gyro_rad[0]", "gyro_rad[1]"]);
+    assert_eq!(names.len(), 6);
+    assert!(report["notes"].to_string().contains("of sensor_combined"), "{}", report["notes"]);
+    let table: String = (0..200).map(|row| format!("{row},{}\n", row * row % 17)).collect();
+    let ran = good("advise - --evaluations 2 --json --rate 100", &format!("x,y\n{table}"));
+    assert_eq!(ran.log()["channels"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn channels_are_named_in_one_way_for_tables_and_logs() {
+    let [log, _] = flight_logs().map(|log| log.display().to_string());
+    let hexarotor = flight("hexarotor.csv");
+    let three = ran!("encode {SF} --columns gyro_x,gyro_y,gyro_z {hexarotor}").output;
+    for names in
+        ["--channels gyro_*", "--channels gyro_?", "--channel 2,gyro_y,gyro_z", "--column gyro_*"]
+    {
+        assert_eq!(ran!("encode {SF} {names} {hexarotor}").output, three, "{names}");
+    }
+    let fields = "gyro_rad[0],gyro_rad[1],gyro_rad[2]";
+    let three = ran!("encode {SF} --topic sensor_combined --fields {fields} {log}").output;
+    for names in [
+        "--channels gyro_rad[*]",
+        "--channels gyro_rad[0..3]",
+        "--channels sensor_combined.gyro_rad[0..3]",
+        "--channels sensor_c*.gyro_rad[?]",
+        "--topic sensor_combined --field gyro_rad[0..3]",
+        "--topic sensor_combined --channels gyro_rad[*]",
+    ] {
+        assert_eq!(ran!("encode {SF} {names} {log}").output, three, "{names}");
+    }
+    // Commands that take one channel do not take the first of several.
+    for command in ["score", "plot -o a.svg"] {
+        refused(
+            &format!("{command} {SF} --channels gyro_* {hexarotor}"),
+            "",
+            &["takes one column or field, not 3"],
+        );
+    }
+    let words = ["several topics, ", "such as 'actuator_motors.*timestamp*'"];
+    refused(&format!("encode {SF} --channels *timestamp* {log}"), "", &words);
+    refused(
+        &format!("encode {SF} --channels altimeter[*] {log}"),
+        "",
+        &["no channel `altimeter[*]`; near it are "],
+    );
+    let (_directory, bag) = file("a.bag", Kind::Bag.log("none"));
+    let rate = ran!("encode {SF} --topic imu --field rate {bag}").output;
+    for names in
+        ["--channels rate", "--channels imu.rate", "--channels /imu.rate", "--channels */rate"]
+    {
+        let names = names.replace("*/rate", "*imu.rate");
+        assert_eq!(ran!("encode {SF} {names} {bag}").output, rate, "{names}");
+    }
+}
+
+/// A refusal ends with a command that succeeds, and each name that a message suggests is taken.
+#[test]
+fn suggestions_are_taken() {
+    let [log, other] = flight_logs().map(|log| log.display().to_string());
+    let (_directory, bag) = file("a.bag", Kind::Bag.log("none"));
+    for log in [&log, &other, &bag] {
+        let ran = spikewire(&format!("score {SF} --skip-non-finite {log}"), "");
+        assert_eq!(ran.status, 2, "{}", ran.stderr);
+        assert!(
+            ran.stderr.contains("a log needs --channels, such as --channels '"),
+            "{}",
+            ran.stderr
+        );
+        let line = ran.stderr.lines().last().unwrap().trim().replace('\'', "");
+        ran!("{}", line.strip_prefix("spikewire ").unwrap());
+    }
+    let asked = format!("encode {SF} --topic sensor_combined --field gyro_rads {log}");
+    let ran = spikewire(&asked, "");
+    let (_, near) =
+        ran.stderr.split_once("near it are ").unwrap_or_else(|| panic!("{}", ran.stderr));
+    let near = near.split(';').next().unwrap();
+    assert!(near.contains("gyro_rad[0..3]"), "{near}");
+    for name in near.split(", ") {
+        ran!("encode {SF} --topic sensor_combined --field {name} {log}");
+    }
+    let table = "time_us,temperature\n0,1\n1,2\n";
+    refused(
+        "encode --scheme sf --threshold 1 -",
+        "a,b\n1,2\n",
+        &["--channels must say which; there are a, b"],
+    );
+    good("encode --scheme sf --threshold 1 -", table);
 }

@@ -44,6 +44,9 @@ const STEEP: f64 = 0.02;
 /// the bandwidth, is too small.
 const FEWEST: f64 = 4.0;
 
+/// Largest RMSE on held-out blocks, as a multiple of the allowed RMSE. It is above 1 because blocks differ by chance.
+const MARGIN: f64 = 1.25;
+
 /// Warning of a search that ended early.
 const CUT_SHORT: &str = "the search was cut short: what is advised depends on this machine's speed, and on when it was stopped";
 
@@ -282,6 +285,8 @@ struct Candidate {
     link_bytes_per_second: Option<f64>,
     /// Whether the parameters are those with which the simulated drone flew.
     is_as_flown: bool,
+    /// Largest RMSE that was allowed.
+    max_rmse: f64,
     /// RMSE of the whole recording beside the samples before the filter.
     rmse_of_samples: f64,
     #[serde(flatten)]
@@ -420,7 +425,7 @@ impl Advice {
         budget: &Budget,
     ) -> Result<()> {
         let objection = match self.loop_latency {
-            Some(_) => flown::objection(scheme.name(), request.frame_loss),
+            Some(_) => flown::objection(scheme.name(), request.frame_loss, self.look.rate),
             None => None,
         };
         if let Some(words) = objection {
@@ -464,16 +469,30 @@ impl Advice {
                     if parameter.kind == Kind::Number { &mut counts } else { &mut numbers };
                 others.unset(parameter.name);
             }
+            let bound = self.bound(&ready);
             // A log that jumps farther than any flight, as in a crash, needs more spikes a sample.
             for flown in [asked, &numbers, &counts] {
                 let own = fixed.or(flown);
-                if let Tuning::Reached(mut own) = self.searched(request, &ready, &own, budget)? {
+                let searched = self.searched(request, &ready, &own, bound, budget)?;
+                if let Tuning::Reached(mut own) = searched {
                     own.is_as_flown = flown == asked && fixed.or(asked) == *asked;
                     return Ok(Tuning::Reached(own));
                 }
             }
         }
-        self.searched(request, &ready, fixed, budget)
+        self.searched(request, &ready, fixed, self.max_rmse, budget)
+    }
+
+    /// Returns the largest RMSE with which the parameters that flew are taken. Those of the bank that flew in every loop
+    /// are fine enough in any case, as a drone flew with them as well as on samples; the blocks on which they are scored
+    /// may have more error than the whole.
+    fn bound(&self, ready: &Ready) -> f64 {
+        match &ready.flown {
+            Some((_, errors)) if flown::is_every_loop(ready.scheme.name(), self.look.rate) => {
+                self.max_rmse.max(MARGIN * errors.rmse)
+            }
+            _ => self.max_rmse,
+        }
     }
 
     /// Filters a recording as the scheme's flights did, and finds the limits on the scheme's settings.
@@ -505,7 +524,11 @@ impl Advice {
     /// control loop, if the channel's unit is unknown, or if the scheme did not fly.
     fn flown_parameters(&self, scheme: Scheme) -> Option<Asked> {
         self.loop_latency?;
-        Some(self.anchored(scheme).or(&flown::parameters(scheme, self.inertial.as_ref()?)?))
+        Some(self.anchored(scheme).or(&flown::parameters(
+            scheme,
+            self.inertial.as_ref()?,
+            self.look.rate,
+        )?))
     }
 
     /// Returns the parameters that every advice on a scheme has for this channel. On an axis of an inertial sensor a code with
@@ -519,19 +542,18 @@ impl Advice {
         asked
     }
 
-    /// Searches for settings of a scheme within `budget`. The parameters in `fixed` keep their values.
+    /// Searches for settings of a scheme within `budget`, whose RMSE is at most `max_rmse`. The parameters in `fixed` keep
+    /// their values.
     fn searched(
         &self,
         request: &AdviseRequest,
         ready: &Ready,
         fixed: &Asked,
+        max_rmse: f64,
         budget: &Budget,
     ) -> Result<Tuning> {
-        /// Largest RMSE on held-out blocks, as a multiple of the allowed RMSE. It is above 1 because blocks differ by
-        /// chance.
-        const MARGIN: f64 = 1.25;
         let Ready { scheme, limits, flown, .. } = ready;
-        let (scheme, recording, max_rmse) = (*scheme, ready.recording(), self.max_rmse);
+        let (scheme, recording) = (*scheme, ready.recording());
         let (train, held_out) = cut(recording, HoldOut { blocks: 10, part: 0.3 })?;
         let whole = Stretch::whole(recording);
         let cut = Cut { name: recording.name.clone(), train, held_out, whole };
@@ -595,6 +617,7 @@ impl Advice {
         Ok(Tuning::Reached(Box::new(Candidate {
             link_bytes_per_second,
             is_as_flown,
+            max_rmse,
             rmse_of_samples,
             row,
             scheme,
@@ -612,7 +635,7 @@ impl Advice {
     /// filter's corner frequency.
     fn filter(&self, scheme: Scheme, sample: SampleType) -> Option<Filtered> {
         self.loop_latency?;
-        let filter = flown::flown(scheme.name())?.filter()?;
+        let filter = flown::flown(scheme.name(), self.look.rate)?.filter()?;
         Filtered::new(filter, sample, self.look.rate?)
     }
 
@@ -757,7 +780,7 @@ impl Advice {
                 "    {} bytes a second on the link, where samples in frames of 4 bytes more take {raw}: the fewest of {} schemes that come near enough, this one within an RMSE of {}{flown}; {next}",
                 bytes(best),
                 self.reaching.len(),
-                short(self.max_rmse)
+                short(best.max_rmse)
             ),
         ];
         if let (Some(bytes), Some(raw)) = (best.link_bytes_per_second, self.raw_bytes_per_second)

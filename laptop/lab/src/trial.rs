@@ -56,7 +56,12 @@ impl Recording {
     /// Returns an error if the input cannot be read, has several channels, or has no finite sample.
     pub fn read(input: &InputOptions) -> Result<Self> {
         input.single("this command")?;
-        Self::read_all(input)?.pop().ok_or_else(|| TableKind::NoChannel.at(input.name()))
+        let mut all = Self::read_all(input)?;
+        if all.len() > 1 {
+            let command = "this command".to_owned();
+            return Err(TableKind::OneChannel { command, channels: all.len() }.into());
+        }
+        all.pop().ok_or_else(|| TableKind::NoChannel.at(input.name()))
     }
 
     /// Reads a recording of every chosen channel. Rows in which any channel is not finite are left out. The usual step

@@ -1,6 +1,5 @@
 // Opens recordings and reads a channel of them.
 
-import { wanted as inertial } from "./channels.js";
 import { whileBusy } from "./dom.js";
 import { Library } from "./library.js";
 import { Pyramid } from "./pyramid.js";
@@ -53,7 +52,7 @@ async function openNow({ files: given = [], example }, wanted = {}) {
     const answer = await library.ask(openRequest({ example, files, table: state.table }), { files, onProgress });
     if (library !== state.library) return;
     if (!answer.topics.some(({ fields }) => fields.length)) throw new Error("it has no channel of numbers beside times and counts: open another file, or say the header line");
-    Object.assign(state, { opened: { ...answer, example, files, table: state.table }, isDamaged: state.acceptsCut && state.isDamaged, channel: channelOf(answer.topics, wanted) });
+    Object.assign(state, { opened: { ...answer, example, files, table: state.table }, isDamaged: state.acceptsCut && state.isDamaged, channel: channelOf(answer, wanted) });
     await load();
   } catch (error) {
     if (error.isStopped || library !== state.library) return;
@@ -79,15 +78,15 @@ export function goBack() {
 const topicOf = (topics, name) => topics.find((topic) => topic.name === name);
 
 /** The channel that is wanted, as far as there is such a one. */
-export function channelOf(topics, { topic, field, rate, skip }) {
-  const own = topicOf(topics, topic) ?? topicOf(topics, inertial(topics).topic);
-  return { topic: own.name, field: own.fields.includes(field) ? field : inertial([own]).fields[0], rate: rate ?? "", skip: skip ?? false };
+export function channelOf({ topics, first }, { topic, field, rate, skip }) {
+  const own = topicOf(topics, topic) ?? topicOf(topics, first);
+  return { topic: own.name, field: own.fields.includes(field) ? field : own.first, rate: rate ?? "", skip: skip ?? false };
 }
 
 /** Reads another channel of what is open. */
 export function loadChannel(part) {
   if (!state.opened) return undefined;
-  state.channel = channelOf(state.opened.topics, { ...state.channel, ...part });
+  state.channel = channelOf(state.opened, { ...state.channel, ...part });
   return load();
 }
 

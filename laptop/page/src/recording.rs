@@ -8,7 +8,7 @@ use flight_logs::Kind;
 use flight_logs::files::{Bytes, lend, take_back};
 use lab::bench::signal::{RATE, Waveform};
 use lab::input::messages::overview;
-use lab::input::{CHUNK, ChannelOptions, Clock, InputOptions};
+use lab::input::{CHUNK, ChannelOptions, Clock, InputOptions, inertial, items};
 use lab::trial::Recording;
 use lab::unit::unit_of_name;
 use serde::Deserialize;
@@ -23,6 +23,9 @@ const GAP: f64 = 1.5;
 
 /// The flight that the page brings.
 const FLIGHT: &[u8] = include_bytes!("../../../data/hexarotor.csv");
+
+/// Most items of an array that are listed. A longer array has many fields to choose from already.
+const MOST_ITEMS: usize = 64;
 
 /// Seconds of the paper's signal.
 const SECONDS: usize = 15;
@@ -130,57 +133,73 @@ fn paper() -> String {
 /// What a file holds: topics with fields, of which a table has one without a name.
 fn list(path: &Path, accept_cut: bool, table: &TableOptions) -> Result<Value> {
     FILE.set(path.to_owned());
-    let (topics, notes) = match Kind::of(path)? {
+    let (topics, notes): (Vec<Topic>, Vec<String>) = match Kind::of(path)? {
         None => {
             let mut options = options(None)?;
             table.apply(&mut options)?;
             options.columns = vec!["all".to_owned()];
             let source = InputOptions { input: path.to_owned(), channel: options }.open()?;
-            let names: Vec<String> = source.names().into_iter().map(str::to_owned).collect();
+            let fields: Vec<String> = source.names().into_iter().map(str::to_owned).collect();
             let notes = source.notes().iter().map(|note| note.spelled(label).to_string());
-            (vec![topic("", &names, 0, "")], notes.collect())
+            (vec![Topic { fields, ..Topic::default() }], notes.collect())
         }
         Some(kind) => {
             let (topics, notes) = overview(path, kind, accept_cut, GAP)?;
             let topics =
                 topics.into_iter().filter(|own| own.unread.is_none() && !own.fields.is_empty());
-            let topics = topics.map(|own| {
-                let fields: Vec<String> = own.fields.iter().flat_map(|field| each(field)).collect();
-                let about = format!("{} messages {}", own.count, own.kind);
-                topic(&own.name, &fields, own.count, about.trim_end())
+            let topics = topics.map(|own| Topic {
+                fields: own.fields.iter().flat_map(|field| items(field, MOST_ITEMS)).collect(),
+                count: own.count,
+                about: format!("{} messages {}", own.count, own.kind).trim_end().to_owned(),
+                name: own.name,
             });
             (topics.collect(), notes)
         }
     };
-    if topics.is_empty() {
+    let candidates: Vec<inertial::Topic> = topics.iter().map(Topic::candidate).collect();
+    let found = inertial::find(&candidates).map(|sensor| sensor.topic);
+    let Some(first) = found.or(topics.first().map(|topic| topic.name.clone())) else {
         bail!("{}: it holds no numbers that can be read", path.display());
-    }
-    Ok(json!({ "file": path, "topics": topics, "notes": notes }))
-}
-
-/// A topic of a log, or the columns of a table. A field without a known unit has none.
-fn topic(name: &str, fields: &[String], count: u64, about: &str) -> Value {
-    let unit = |field: &String| match name {
-        "" => unit_of_name(field),
-        topic => unit_of_name(&format!("{topic}.{field}")),
     };
-    let units: Vec<_> = fields.iter().map(unit).collect();
-    json!({ "name": name, "fields": fields, "units": units, "count": count, "about": about })
+    let topics: Vec<Value> = topics.iter().map(Topic::to_json).collect();
+    Ok(json!({ "file": path, "topics": topics, "notes": notes, "first": first }))
 }
 
-/// The fields that `name[0..3]` stands for.
-fn each(field: &str) -> Vec<String> {
-    /// An array that is longer has many fields to choose from already.
-    const MOST: usize = 64;
-    let array = field.split_once("[0..").and_then(|(name, rest)| {
-        let (count, after) = rest.split_once(']')?;
-        Some((name, count.parse::<usize>().ok()?, after))
-    });
-    match array {
-        Some((name, count, after)) => {
-            (0..count.min(MOST)).map(|own| format!("{name}[{own}]{after}")).collect()
-        }
-        None => vec![field.to_owned()],
+/// A topic of a log, or the columns of a table, which have no name.
+#[derive(Default)]
+struct Topic {
+    name: String,
+    fields: Vec<String>,
+    count: u64,
+    about: String,
+}
+
+impl Topic {
+    fn candidate(&self) -> inertial::Topic<'_> {
+        inertial::Topic { name: &self.name, fields: &self.fields, count: self.count }
+    }
+
+    /// Returns the topic as the page takes it. A field without a known unit has none, and one that is no axis of an
+    /// inertial sensor has no group of a bank.
+    fn to_json(&self) -> Value {
+        let Self { name, fields, count, about } = self;
+        let unit = |field: &String| match &**name {
+            "" => unit_of_name(field),
+            topic => unit_of_name(&format!("{topic}.{field}")),
+        };
+        let units: Vec<_> = fields.iter().map(unit).collect();
+        let groups: Vec<_> =
+            fields.iter().map(|field| inertial::group(name, fields, field)).collect();
+        json!({
+            "name": name,
+            "fields": fields,
+            "units": units,
+            "groups": groups,
+            "axes": inertial::axes(name, fields),
+            "first": inertial::first_field(name, fields),
+            "count": count,
+            "about": about,
+        })
     }
 }
 

@@ -5,29 +5,8 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { choose, compare, DATA, drawer, drop, enter, exported, LOGS, opened, settled, spikewire, text, work } from "./harness.mjs";
 import { bag, decoded, euroc, mcap, px4, px4Raw, ulog } from "./made.mjs";
-import { wanted } from "../js/channels.js";
 
 export const steps = {
-  async "opens a log on the turn rates, by the names that each kind of log has"() {
-    const three = (name) => [0, 1, 2].map((axis) => `${name}[${axis}]`);
-    const xyz = (name) => ["x", "y", "z"].map((axis) => `${name}${axis}`);
-    for (const [topics, topic, fields] of [
-      [[{ name: "actuator_outputs", count: 9, fields: three("output") },
-        { name: "sensor_combined", count: 30, fields: [...three("gyro_rad"), "gyro_integral_dt", ...three("accelerometer_m_s2"), "accelerometer_clipping"] },
-        { name: "sensor_gyro", count: 90, fields: ["timestamp_sample", "device_id", ...xyz(""), "temperature"] }], "sensor_combined", [...three("gyro_rad"), ...three("accelerometer_m_s2")]],
-      [[{ name: "sensor_accel", count: 90, fields: xyz("") }, { name: "sensor_gyro", count: 90, fields: ["device_id", ...xyz("")] },
-        { name: "vehicle_rates_setpoint", count: 90, fields: ["roll", "pitch", "yaw"] }], "sensor_gyro", xyz("")],
-      [[{ name: "/clock", count: 9, fields: ["clock"] }, { name: "/imu", count: 90, fields: ["header.seq", ...xyz("orientation."), ...xyz("angular_velocity."), ...xyz("linear_acceleration.")] }],
-        "/imu", [...xyz("angular_velocity."), ...xyz("linear_acceleration.")]],
-      [[{ name: "", fields: ["loopIteration", "time", ...three("axisP"), ...three("gyroADC"), ...three("gyroUnfilt"), ...three("accSmooth")] }], "", [...three("gyroADC"), ...three("accSmooth")]],
-      [[{ name: "ATT", count: 9, fields: ["DesRoll", "Roll"] }, { name: "IMU", count: 90, fields: ["TimeUS", ...["X", "Y", "Z"].map((axis) => `Gyr${axis}`), ...["X", "Y", "Z"].map((axis) => `Acc${axis}`), "T"] }],
-        "IMU", ["GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ"]],
-      [[{ name: "", fields: ["#timestamp [ns]", ...["x", "y", "z"].map((axis) => `w_RS_S_${axis} [rad s^-1]`), ...["x", "y", "z"].map((axis) => `a_RS_S_${axis} [m s^-2]`)] }],
-        "", [...["x", "y", "z"].map((axis) => `w_RS_S_${axis} [rad s^-1]`), ...["x", "y", "z"].map((axis) => `a_RS_S_${axis} [m s^-2]`)]],
-      [[{ name: "", fields: ["timestamp", "alpha"] }], "", ["alpha"]],
-    ]) assert.deepEqual(wanted(topics), { topic, fields }, JSON.stringify(topics));
-  },
-
   async "opens ten logs of seven formats on their gyroscope"() {
     const page = await opened();
     const made = { "px4.ulg": px4(), "newer.ulg": px4Raw(), "one.ulg": ulog(), "imu.bag": bag(), "imu.mcap": mcap(), "euroc.csv": Buffer.from(euroc()), "decoded.csv": Buffer.from(decoded()) };

@@ -11,6 +11,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::advise::{Advice, AdviseRequest, BankAdvice, advise};
 use lab::dataset::Found;
+use lab::input::{InputOptions, Unnamed};
 use lab::output::Output;
 use lab::plot::{Picture, draw};
 use lab::trial::{Recording, Trial};
@@ -32,9 +33,10 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 Examples:
   spikewire advise flight.csv --loop-bandwidth 4 -o flight.toml
-  spikewire advise flight.csv --channel gyro_x --max-rmse 0.05 --max-latency 0 --picture roll.svg
+  spikewire advise flight.ulg --loop-bandwidth 4
+  spikewire advise flight.csv --channels gyro_x --max-rmse 0.05 --max-latency 0 --picture roll.svg
   spikewire advise logs --channels-of ulog='sensor_combined.gyro_rad[0]' --channels-of table=gyro_x
-  spikewire advise flight.ulg --topic sensor_combined --field 'gyro_rad[0]' --json")]
+  spikewire advise flight.ulg --channels 'sensor_gyro.*' --json")]
 pub(crate) struct Advise {
     #[command(flatten)]
     logs: LogOptions,
@@ -74,7 +76,7 @@ pub(crate) struct Advise {
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
     /// Picture to draw, as `.svg` or `.png`: signal, spikes and reconstruction with the advised scheme; needs one log
-    /// of one channel, or --channel
+    /// of one channel, or --channels
     #[arg(long)]
     picture: Option<PathBuf>,
     /// Write the advised bank of encoders, one for each channel of one log, as a flight file (`flight.toml`). It is
@@ -190,10 +192,10 @@ impl Advise {
         is_single: bool,
         stop: &Stop,
     ) -> Result<(AdviseRequest, Vec<String>, Advised)> {
-        let recordings =
-            self.channels.read(path, is_single, |input| Recording::read_all(&input.or_all()?))?;
+        let read = |input: &InputOptions| Recording::read_all(&input.or(Unnamed::InertialOrAll));
+        let recordings = self.channels.read(path, is_single, read)?;
         if self.picture.is_some() && recordings.len() > 1 {
-            bail!("--picture draws one channel; --channel says which");
+            bail!("--picture draws one channel; --channels says which");
         }
         let notes = recordings.first().map(Recording::notes).unwrap_or_default();
         let notes = words::notes(&notes);

@@ -29,7 +29,7 @@ use std::thread;
 #[command(after_help = "\
 Examples:
   spikewire dataset --flight flight.toml logs -o spikes
-  spikewire dataset --scheme sf --threshold 0.1 --columns gyro_x,gyro_y,gyro_z 'flights/**/*.csv' -o spikes
+  spikewire dataset --scheme sf --threshold 0.1 --channels 'gyro_*' 'flights/**/*.csv' -o spikes
   spikewire dataset --flight flight.toml --channels-of 'ulog=sensor_combined.gyro_rad[0]' --channels-of ardupilot=IMU.GyrX logs -o spikes")]
 pub(crate) struct Dataset {
     #[command(flatten)]

@@ -26,7 +26,7 @@ use tempfile::NamedTempFile;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
-  spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv -o spikes.csv
+  spikewire encode --scheme sf --threshold 0.1 --channels gyro_x flight.csv -o spikes.csv
   spikewire decode spikes.csv -o decoded.csv
   spikewire decode --spikes dataset/events/flight-0123456789ab.parquet -o spikes.csv")]
 pub(crate) struct Decode {

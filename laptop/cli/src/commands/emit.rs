@@ -49,7 +49,7 @@ struct Rust {
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
-  spikewire tune flight.csv --channel gyro_x --scheme sf --emit toml -o roll.toml
+  spikewire tune flight.csv --channels gyro_x --scheme sf --emit toml -o roll.toml
   spikewire emit c roll.toml --spikewire ../spikewire -o roll
   cd roll
   cargo run --features header --bin header include

@@ -7,6 +7,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use lab::encode::{encode, encode_flight};
 use lab::flight::Flight;
+use lab::input::Unnamed;
 use lab::output::Output;
 use lab::spikes::Format;
 use std::path::PathBuf;
@@ -18,9 +19,9 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
-  spikewire encode --scheme sf --threshold 0.1 --column gyro_x flight.csv -o spikes.csv
-  spikewire encode --scheme sf --threshold 0.1 --columns gyro_x,gyro_y,gyro_z flight.csv
-  spikewire encode --scheme hsa --filter triang:15,peak=2 --topic sensor_combined --field 'gyro_rad[0]' flight.ulg
+  spikewire encode --scheme sf --threshold 0.1 --channels gyro_x flight.csv -o spikes.csv
+  spikewire encode --scheme sf --threshold 0.1 --channels 'gyro_*' flight.csv
+  spikewire encode --scheme hsa --filter triang:15,peak=2 --channels 'sensor_combined.gyro_rad[0]' flight.ulg
   spikewire encode --flight flight.toml flight.csv
   spikewire encode --scheme mw --threshold 120 --window 5 --sample i16 --rate 1000 counts.csv")]
 pub(crate) struct Encode {
@@ -53,7 +54,7 @@ pub(crate) fn run(options: &Encode) -> Result<()> {
         encode_flight(&Flight::read(flight)?, &input.to_lab()?, format, open)?
     } else {
         let (scheme, sample, parameters) = coding.one()?;
-        encode(&input.to_lab()?, scheme, sample, &parameters, format, open)?
+        encode(&input.to_lab()?.or(Unnamed::Inertial), scheme, sample, &parameters, format, open)?
     };
     output.finish()?;
     tell(&notes);

@@ -59,7 +59,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
-  spikewire network trained.nir --scheme position --neurons 20 --column gyro_x flight.csv -o src/network.rs
+  spikewire network trained.nir --scheme position --neurons 20 --channels gyro_x flight.csv -o src/network.rs
   spikewire network trained.nir --on controller --as snntorch --reset subtract-late spikes.txt -o src/network.rs
   spikewire network trained.nir --on controller --trained-spikes outputs.txt spikes.txt -o src/network.rs")]
 pub(crate) struct Network {

@@ -20,8 +20,8 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
-  spikewire plot --scheme sf --threshold 0.1 --column gyro_x --unit rad/s flight.csv -o sf.png
-  spikewire plot --all --column gyro_x --range 2350..2700 flight.csv -o flight.svg")]
+  spikewire plot --scheme sf --threshold 0.1 --channels gyro_x --unit rad/s flight.csv -o sf.png
+  spikewire plot --all --channels gyro_x --range 2350..2700 flight.csv -o flight.svg")]
 pub(crate) struct Plot {
     /// Draw the first figure in the paper, Dupeyroux et al. (2022): panels A-G for the paper's schemes, with the
     /// paper's settings, and panel H for the efficiency of these schemes

@@ -29,8 +29,8 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
-  spikewire score --column gyro_x flight.csv
-  spikewire score --scheme sf --threshold 0.1 --column gyro_x --json flight.csv
+  spikewire score --channels gyro_x flight.csv
+  spikewire score --scheme sf --threshold 0.1 --channels gyro_x --json flight.csv
   spikewire score --flight flight.toml flight.csv
   spikewire score --scheme sf --threshold 0.1 --split test spikes")]
 pub(crate) struct Score {

@@ -12,6 +12,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::dataset::Found;
 use lab::flight::{TunedChannel, of_rows};
+use lab::input::{InputOptions, Unnamed};
 use lab::output::Output;
 use lab::plot::draw_fronts;
 use lab::plot::front::Panel;
@@ -40,11 +41,11 @@ use std::time::Instant;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
-  spikewire tune flight.csv --channel gyro_x --scheme sf --min-efficiency 95
-  spikewire tune a.ulg b.ulg --channel 'sensor_combined.gyro_rad[0]' --scheme all --max-rmse 0.1 --core M0 --sample q16.16
-  spikewire tune flight.csv --channel gyro_x --scheme hsa --filter free --sample q8.8 --emit rust -o src/roll.rs
+  spikewire tune flight.csv --channels gyro_x --scheme sf --min-efficiency 95
+  spikewire tune a.ulg b.ulg --channels 'sensor_combined.gyro_rad[0]' --scheme all --max-rmse 0.1 --core M0 --sample q16.16
+  spikewire tune flight.csv --channels gyro_x --scheme hsa --filter free --sample q8.8 --emit rust -o src/roll.rs
   spikewire tune flight.csv --scheme sod --spikes 8 --max-rmse 0.1 --emit flight -o flight.toml
-  spikewire tune flight.csv --channel gyro_x,gyro_y --scheme all --front front.svg")]
+  spikewire tune flight.csv --channels gyro_x,gyro_y --scheme all --front front.svg")]
 pub(crate) struct Tune {
     #[command(flatten)]
     logs: LogOptions,
@@ -288,7 +289,8 @@ impl Tune {
         let by_place = !self.channels.channels_of.is_empty();
         for path in paths {
             let log = path.display().to_string();
-            let mut recordings = self.channels.read(path, is_single, Recording::read_all)?;
+            let read = |input: &InputOptions| Recording::read_all(&input.or(Unnamed::Inertial));
+            let mut recordings = self.channels.read(path, is_single, read)?;
             let notes = recordings.first().map(Recording::notes).unwrap_or_default();
             let notes = words::notes(&notes);
             if !self.json {

@@ -1,7 +1,7 @@
 //! Advice on one scheme for all channels together. The schemes are ranked by bytes a second on the link.
 
 use super::bytes::{Rival, Traffic, rivals, sent};
-use super::flown::{Error, Flown, flown};
+use super::flown::{self, Error, Flown, flown};
 use super::{Advice, AdviseRequest, CUT_SHORT, Errors, Tuning};
 use crate::Result;
 use crate::brief::{brief, short};
@@ -83,9 +83,14 @@ struct Bank {
     most_events: usize,
     /// Whether the scheme's simulated flights used a filter that the recordings' sample rate does not allow.
     lacks_filter: bool,
-    /// Mean attitude error of the simulated drone at the requested frame loss, with and without the code. `None` if no
-    /// flights with the code were simulated, or none with parameters as coarse as these.
+    /// What the simulated flights with this very bank came to at the requested frame loss. `None` if it did not fly.
     flown: Option<Error>,
+    /// The same of flights of a minute.
+    flown_minutes: Option<Error>,
+    /// The conditions in which a drone was lost on this very bank, and not without a code.
+    lost_in: &'static [String],
+    /// Whether the scheme flew, with other settings than these.
+    flew_otherwise: bool,
     /// The channels on which the bank is coarser than the one that flew.
     coarser: Vec<String>,
     /// Whether a search for settings that all channels can share was cut short.
@@ -222,15 +227,7 @@ impl BankAdvice {
                     best.scheme
                 ));
             }
-            if let Some(Error { coded, plain }) = best.flown {
-                lines.push(format!(
-                    "on {} a simulated drone strayed by {}°, without a code by {}°, with {} % of its frames lost",
-                    best.scheme,
-                    short(coded),
-                    short(plain),
-                    self.frame_loss
-                ));
-            }
+            lines.extend(best.of_flights(self.frame_loss));
             if !best.coarser.is_empty() {
                 lines.push(format!(
                     "not known: how any drone flies on it: coarser than what flew on {}",
@@ -268,6 +265,37 @@ impl BankAdvice {
 }
 
 impl Bank {
+    /// Says how a simulated drone flew on this very bank, if it did.
+    fn of_flights(&self, frame_loss: f64) -> Vec<String> {
+        let mut lines = Vec::new();
+        let words = |own: &Error, long: &str| {
+            format!(
+                "in {} flights {long} a simulated drone strayed by {}° on this bank, without a code by {}°; {} lost",
+                own.flights,
+                short(own.coded),
+                short(own.plain),
+                own.lost
+            )
+        };
+        if let Some(own) = &self.flown {
+            lines.push(words(own, &format!("of 3 or 4 s with {frame_loss} % of the frames lost")));
+        }
+        if let Some(own) = &self.flown_minutes {
+            lines.push(words(own, "of 60 s on Betaflight's loop with 1 % of the frames lost"));
+        }
+        if !self.lost_in.is_empty() {
+            let all = self.lost_in.join(", ");
+            lines.push(format!("it lost flights that samples did not lose: {all}"));
+        }
+        if self.flew_otherwise && self.coarser.is_empty() && !self.lacks_filter {
+            lines.push(format!(
+                "not known: how a drone flies on these settings: {} flew with others, no finer than these",
+                self.scheme
+            ));
+        }
+        lines
+    }
+
     /// Says how many bytes its rivals take, and which of them take fewer than the code.
     fn beside_rivals(&self) -> String {
         let words = |own: &Rival| format!("{} would take {:.0}", own.name, own.bytes_per_second);
@@ -311,7 +339,7 @@ fn bank(
     let rows: Option<Vec<&Row>> = tuned.map(|(own, _)| own.row(scheme)).collect();
     let Some(rows) = rows else { return Ok(Ok(None)) };
     let in_loop = request.loop_bandwidth.is_some();
-    let flown = flown(scheme.name()).filter(|_| in_loop);
+    let flown = flown(scheme.name(), Some(rate)).filter(|_| in_loop);
     let heals = scheme.info().has_baseline();
     let apart = apart(scheme, flown);
     let mut shared = shared(scheme, &rows, heard.len());
@@ -387,7 +415,7 @@ fn bank(
         heard.iter().any(|(own, _)| own.inertial.is_none() && own.look.name == *name)
     };
     let lacks_filter = flown.is_some_and(|own| own.filter().is_some()) && flight.filter.is_none();
-    let is_as_flown = coarser.is_empty() && !lacks_filter;
+    let is_as_flown = flown.is_some_and(|flown| is_as_flown(scheme, heard, &flight, flown));
     let samples = heard.iter().map(|(_, own)| own.values.len()).min().unwrap_or_default() as u64;
     let Traffic { events, bytes } = sent(&flight, &trials, samples, in_loop)?;
     let seconds = samples as f64 / rate;
@@ -399,7 +427,12 @@ fn bank(
         keyframe_every: flight.keyframe_every,
         most_events: most_events(&flight),
         lacks_filter,
-        flown: flown.filter(|_| is_as_flown).and_then(|own| own.error(request.frame_loss)),
+        flown: is_as_flown
+            .then(|| flown::error(scheme.name(), Some(rate), request.frame_loss))
+            .flatten(),
+        flown_minutes: is_as_flown.then(|| flown::minutes(scheme.name(), Some(rate))).flatten(),
+        lost_in: flown.filter(|_| is_as_flown).map_or(&[], Flown::lost_in),
+        flew_otherwise: flown.is_some() && !is_as_flown,
         coarser: coarser.into_iter().filter(|own| in_loop && !unknown(own)).collect(),
         is_cut_short,
         channels,
@@ -413,6 +446,46 @@ fn apart(scheme: Scheme, flown: Option<&Flown>) -> f64 {
         return HEALING_KEYFRAMES;
     }
     flown.and_then(Flown::keyframes).unwrap_or(KEYFRAMES)
+}
+
+/// Returns whether a flight file describes the very bank that flew: its six axes, parameters, filter, keyframes and step
+/// numbers.
+fn is_as_flown(
+    scheme: Scheme,
+    heard: &[(&Advice, &Recording)],
+    flight: &Flight,
+    flown: &Flown,
+) -> bool {
+    /// Groups of the channels that flew: turn rates, sideways forces, the force along the thrust.
+    const GROUPS: [usize; 6] = [0, 0, 0, 1, 1, 2];
+    /// Largest deviation of the time between keyframes, in samples, as it is rounded.
+    const ROUNDING: f64 = 1.0;
+    let axes = heard.iter().map(|(own, _)| own.inertial.as_ref().map(|axis| axis.group));
+    let Some(mut groups) = axes.collect::<Option<Vec<usize>>>() else { return false };
+    groups.sort_unstable();
+    let apart = flown.keyframes().map(|own| own * 1e6 / f64::from(flight.period.get()));
+    let is_apart =
+        apart.is_some_and(|own| (own - f64::from(flight.keyframe_every)).abs() <= ROUNDING);
+    let is_same_bank = groups == GROUPS
+        && is_apart
+        && flight.step_bits == flown.step_bits()
+        && flight.filter == flown.filter();
+    is_same_bank
+        && heard.iter().zip(&flight.channels).all(|((own, _), channel)| {
+            let asked = flight.asked(channel);
+            own.flown_parameters(scheme).is_some_and(|flown| is_same(&flown, &asked))
+        })
+}
+
+/// Returns whether `asked` has all values of `flown`. Numbers may differ by their rounding.
+fn is_same(flown: &Asked, asked: &Asked) -> bool {
+    const ROUNDING: f64 = 1e-6;
+    flown.iter().all(|(name, value)| match (value, asked.get(name)) {
+        (Value::Number(own), Some(Value::Number(other))) => {
+            (own - other).abs() <= ROUNDING * own.abs()
+        }
+        (own, other) => other == Some(own),
+    })
 }
 
 /// Moves the value from which all channels start to the shared parameters, if it is the same for all.

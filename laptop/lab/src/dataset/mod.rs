@@ -483,7 +483,10 @@ fn is_channel_missing(error: &Error) -> bool {
         &*error.kind,
         ErrorKind::Table(TableKind::NoColumn { .. })
             | ErrorKind::Log(
-                LogKind::NoTopic { .. } | LogKind::NoField { .. } | LogKind::NoMessages { .. }
+                LogKind::NoTopic { .. }
+                    | LogKind::NoField { .. }
+                    | LogKind::NoChannelOf { .. }
+                    | LogKind::NoMessages { .. }
             )
     )
 }

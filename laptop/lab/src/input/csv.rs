@@ -7,12 +7,15 @@ pub use overview::{ColumnSummary, Summary, summary};
 use super::cut::WholeLines;
 use super::flysight::{self, Records};
 use super::header::{Header, Start, is_data, units};
+use super::inertial;
+use super::names::{MOST_ITEMS, fits, is_pattern, items, with_units};
 use super::spaces::OneBlank;
 use super::text::{decode, name, shown, unpacked};
 use super::time::{Named, Reading, TimeUnit, implausible, odd_rate};
 use super::time::{microseconds, number, of_given, of_name};
-use super::{ALL, CHUNK, Chunk, InputOptions, Source, TableKind, near};
+use super::{ALL, CHUNK, Chunk, InputOptions, Source, TableKind, Unnamed, near};
 use crate::error::At;
+use crate::unit::unit_of_name;
 use crate::{Error, ErrorKind, Place, Result, Spot};
 use catalogue::run::{Given, Words};
 use csv::{ByteRecord, Reader, ReaderBuilder};
@@ -236,18 +239,31 @@ impl Table {
         let asked: Vec<&str> = options.columns().collect();
         let mut chosen = None;
         if !matches!(asked[..], [] | [ALL]) {
-            let columns = asked.iter().map(|name| {
-                let is_named = |own: &Column| with_unit(own, units) == *name;
-                all(names).find(is_named).map_or_else(|| find(name, names, &self.file), Ok)
-            });
-            chosen = Some(columns.collect::<Result<Vec<_>>>()?);
+            let mut columns: Vec<Column> = Vec::new();
+            for name in &asked {
+                columns.append(&mut named(name, names, units, &self.file)?);
+            }
+            chosen = Some(columns);
         }
         let time = self.time_column(names, units, chosen.as_deref(), options)?;
+        let mut is_found = false;
         self.columns = if let Some(columns) = chosen {
             columns
         } else {
             let signals = self.signals(names, time.as_ref().map(|(column, _)| column));
-            if asked.is_empty() { vec![only(signals, names, &self.file)?] } else { signals }
+            let sensor = match options.unnamed {
+                Unnamed::Inertial | Unnamed::InertialOrAll if asked.is_empty() => sensor(&signals),
+                _ => Vec::new(),
+            };
+            // A command that reads all columns otherwise has left none out.
+            let is_all = options.unnamed == Unnamed::InertialOrAll && sensor.len() == signals.len();
+            is_found = !sensor.is_empty() && !is_all;
+            match options.unnamed {
+                _ if !asked.is_empty() => signals,
+                _ if !sensor.is_empty() => sensor,
+                Unnamed::One | Unnamed::Inertial => vec![only(signals, names, &self.file)?],
+                Unnamed::InertialOrAll | Unnamed::All => signals,
+            }
         };
         self.note_names(names);
         if let Some((column, says)) = time.filter(|(time, _)| !self.columns.contains(time)) {
@@ -259,7 +275,31 @@ impl Table {
             column.name = with_unit(column, units);
         }
         self.origin = vec![("column", self.names().join(","))];
+        if is_found {
+            self.notes.insert(0, self.note_found());
+        }
         Ok(())
+    }
+
+    /// Returns the note that says which columns are read, as the user named none.
+    fn note_found(&self) -> Words {
+        let names: Vec<String> = self.names().into_iter().map(str::to_owned).collect();
+        let units: Vec<_> =
+            names.iter().map(|name| unit_of_name(name).map(str::to_owned)).collect();
+        let first = self
+            .time
+            .iter()
+            .flat_map(|time| self.ahead.iter().filter_map(|record| time.read(record)));
+        let times: Vec<i128> = first.collect();
+        let rate = match times[..] {
+            [first, .., last] if last > first => {
+                let seconds = (last - first) as f64 * 1e-12;
+                format!(", {:.0} Hz in the first rows", (times.len() - 1) as f64 / seconds)
+            }
+            _ => String::new(),
+        };
+        let note = format!("{}: reads {}{rate}; ", self.file, with_units(&names, &units));
+        Words::from(note).setting("columns").text(" chooses others")
     }
 
     /// Finds the column with the times, and the format of times that the column's name suggests. If several columns hold
@@ -796,6 +836,36 @@ fn nanoseconds(seconds: &Column, names: &[String]) -> Option<Column> {
     };
     let index = names.iter().position(|name| is_rest(&name.to_lowercase()))?;
     Some(Column { index, name: names[index].clone() })
+}
+
+/// Returns the columns that a name stands for: one, or all that fit a pattern such as `gyro_*` or `gyro[0..3]`.
+fn named(asked: &str, names: &[String], units: &[String], file: &str) -> Result<Vec<Column>> {
+    if let Some(column) = all(names).find(|own| own.name == asked || with_unit(own, units) == asked)
+    {
+        return Ok(vec![column]);
+    }
+    let mut columns = Vec::new();
+    for item in items(asked, MOST_ITEMS) {
+        if !is_pattern(&item) {
+            columns.push(find(&item, names, file)?);
+            continue;
+        }
+        let before = columns.len();
+        columns.extend(all(names).filter(|own| fits(&item, &own.name)));
+        if columns.len() == before {
+            let near = near(asked, names.iter().map(String::as_str));
+            return Err(TableKind::NoColumn { name: item, near, comment: None }.at(file));
+        }
+    }
+    Ok(columns)
+}
+
+/// Returns the columns with the three axes or more of the inertial sensor, or none.
+fn sensor(signals: &[Column]) -> Vec<Column> {
+    let names: Vec<String> = signals.iter().map(|own| own.name.clone()).collect();
+    let axes = inertial::axes("", &names);
+    let columns = axes.iter().filter_map(|axis| signals.iter().find(|own| own.name == *axis));
+    if axes.len() < 3 { Vec::new() } else { columns.cloned().collect() }
 }
 
 fn find(asked: &str, names: &[String], file: &str) -> Result<Column> {

@@ -40,7 +40,7 @@ kinds! {
             }),
         NoColumnNumber { number: String, columns: usize } =>
             ("no column {number}; columns are numbered from 1 to {columns}"),
-        WhichColumn { columns: String } => ("{} must say which; there are {columns}", spell("column")),
+        WhichColumn { columns: String } => ("{} must say which; there are {columns}", spell("columns")),
         OneColumn { command: String } => ("{command} takes one column, not all"),
         OneChannel { command: String, channels: usize } =>
             ("{command} takes one column or field, not {channels}; encode takes several"),
@@ -71,7 +71,18 @@ kinds! {
             Some(Rest::From(next)) => format!("; {} goes on at byte {next}", spell("accept_cut")),
             Some(Rest::Before) => format!("; {} takes what is before", spell("accept_cut")),
         }),
-        NeedsChannel => ("a log needs {} and {}", spell("topic"), spell("field")),
+        NeedsChannel { example: Option<String>, is_one: bool } => ("{}{}", match is_one {
+            true => format!("a log needs {}", spell("columns")),
+            false => format!("no name tells a gyroscope or an accelerometer; {} says what to read", spell("columns")),
+        }, match example {
+            Some(example) => format!(", such as {} '{example}'", spell("columns")),
+            None => ", and no topic of this one holds numbers".to_owned(),
+        }),
+        NoChannelOf { name: String, near: String } => ("no channel `{name}`; {near}"),
+        SeveralTopics { topics: String, example: String } => (
+            "the channels are of several topics, {topics}; {} takes those of one, such as '{example}'",
+            spell("columns")
+        ),
         Undefined { topic: String, kind: String, why: String } => ("topic {topic} of {kind}: {why}"),
         NoTopic { topic: String, near: String } => ("no topic `{topic}`; {near}"),
         NoMessages { topic: String } => ("topic {topic} has no messages"),

@@ -5,6 +5,7 @@ mod csv;
 mod cut;
 mod flysight;
 mod header;
+pub mod inertial;
 mod kinds;
 pub mod messages;
 mod names;
@@ -20,7 +21,7 @@ pub(crate) use clock::is_other_rate;
 pub use clock::{Clock, Kind, Step, UnevenRate};
 pub use csv::{ColumnSummary, Summary, summary};
 pub use kinds::{LogKind, TableKind};
-pub use names::near;
+pub use names::{items, near};
 pub use rollover::Rollover;
 pub use text::{shown, text};
 
@@ -100,6 +101,24 @@ pub struct ChannelOptions {
     /// Whether damaged files are accepted. A truncated or damaged log is then read without its damaged parts, and a
     /// truncated table is read up to its last complete line. Otherwise, damage is an error.
     pub accept_cut: bool,
+    /// The channels to read if none is named.
+    #[serde(skip)]
+    pub unnamed: Unnamed,
+}
+
+/// The channels that are read if the options name none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unnamed {
+    /// The only channel. Where there are several, one must be named.
+    #[default]
+    One,
+    /// The axes of the gyroscope and the accelerometer that flew, as their names tell them. If no name does, the only
+    /// channel.
+    Inertial,
+    /// The axes of the gyroscope and the accelerometer that flew. If no name tells them, all columns of a table.
+    InertialOrAll,
+    /// All columns of a table; in a log, the axes of the gyroscope and the accelerometer that flew.
+    All,
 }
 
 impl Default for ChannelOptions {
@@ -118,6 +137,7 @@ impl Default for ChannelOptions {
             gap: 1.5,
             skip_non_finite: false,
             accept_cut: false,
+            unnamed: Unnamed::One,
         }
     }
 }
@@ -253,17 +273,10 @@ impl InputOptions {
     }
 
     fn open_as_is(&self) -> Result<Box<dyn Source>> {
-        let of_tables = [
-            ("column", !self.column.is_empty()),
-            ("columns", !self.columns.is_empty()),
-            ("delimiter", self.delimiter.is_some()),
-            ("header", self.header.is_some()),
-        ];
+        let of_tables =
+            [("delimiter", self.delimiter.is_some()), ("header", self.header.is_some())];
         let kind = if self.is_stdin() { None } else { flight_logs::Kind::of(&self.input)? };
         if let Some(kind) = kind {
-            if let Some(named) = self.named_by_topic() {
-                return named.open_as_is();
-            }
             self.refuse(&of_tables, "a log")?;
             return Ok(Box::new(messages::Channel::open(self, kind)?));
         }
@@ -289,41 +302,12 @@ impl InputOptions {
         csv::Table::open(file, &name, self)
     }
 
-    /// Converts columns such as `TOPIC.FIELD` to a topic and fields of this topic. Returns a copy of the options with
-    /// the topic and fields in place of the columns.
-    ///
-    /// Returns `None` if the options choose no columns, if they already choose a topic or a field, if a column has no
-    /// dot, or if the columns are of different topics.
-    fn named_by_topic(&self) -> Option<Self> {
-        let names: Option<Vec<_>> = self.columns.iter().map(|name| name.split_once('.')).collect();
-        let names = names.filter(|_| self.topic.is_none() && self.field.is_empty())?;
-        let (topic, _) = *names.first()?;
-        if names.iter().any(|(other, _)| *other != topic) {
-            return None;
-        }
-        let field = names.iter().map(|(_, field)| (*field).to_owned()).collect();
-        let channel = ChannelOptions {
-            topic: Some(topic.to_owned()),
-            field,
-            columns: Vec::new(),
-            ..self.channel.clone()
-        };
-        Some(Self { channel, ..self.clone() })
-    }
-
-    /// Returns a copy of these options. In the copy, all columns are chosen if the input is a table and these options
-    /// choose no column.
-    ///
-    /// # Errors
-    /// Returns an error if the file cannot be opened.
-    pub fn or_all(&self) -> Result<Self> {
-        let mut own = self.clone();
-        if self.columns().next().is_none()
-            && (self.is_stdin() || flight_logs::Kind::of(&self.input)?.is_none())
-        {
-            own.channel.columns = vec![ALL.to_owned()];
-        }
-        Ok(own)
+    /// Returns a copy of these options that reads `unnamed` if no channel is named.
+    #[must_use]
+    pub fn or(&self, unnamed: Unnamed) -> Self {
+        let mut options = self.clone();
+        options.channel.unnamed = unnamed;
+        options
     }
 
     /// Returns whether the input is standard input.
@@ -372,6 +356,21 @@ impl InputOptions {
     /// Returns an error if a topic is chosen, which a table does not have.
     fn refuse_topic(&self) -> Result<()> {
         self.refuse(&[("topic", self.topic.is_some())], "a CSV table")
+    }
+
+    /// Checks that a source has one channel, as a pattern may stand for several; `command` is the command's name in the
+    /// error.
+    ///
+    /// # Errors
+    /// Returns an error if the source has several channels.
+    pub(crate) fn check_single(&self, source: &dyn Source, command: &str) -> Result<()> {
+        match source.names().len() {
+            0 | 1 => Ok(()),
+            channels => {
+                let command = command.to_owned();
+                Err(TableKind::OneChannel { command, channels }.into())
+            }
+        }
     }
 
     fn refuse(&self, options: &[(&'static str, bool)], what: &'static str) -> Result<()> {

@@ -1,10 +1,13 @@
 //! Reads fields of one topic of a log as samples.
 
+use super::choice::{Choice, Found};
 use super::damage;
 use super::stamp::{SensorStamp, Time};
 use crate::input::clock::prefers_stamps;
+use crate::input::names::{few, with_units};
 use crate::input::time::{Named, TimeUnit, of_given};
 use crate::input::{CHUNK, Chunk, InputOptions, LogKind, Source, near};
+use crate::unit::unit_of_name;
 use crate::{Error, Place, Result, Spot};
 use catalogue::run::Words;
 use flight_logs::definition::{Definition, NoNumber, Path};
@@ -30,6 +33,8 @@ pub struct Channel {
     origin: Vec<(&'static str, String)>,
     /// Note for the user on the times, if these are not those of recording.
     of_times: Option<Words>,
+    /// The sensor that was found, if the user named no channel.
+    found: Option<Found>,
     notes: Vec<Words>,
 }
 
@@ -51,12 +56,7 @@ impl Channel {
     /// Returns an error if the log, the topic or a field is missing or cannot be read.
     pub fn open(options: &InputOptions, kind: Kind) -> Result<Self> {
         let file = options.name();
-        let fields: Vec<String> = options.fields().map(str::to_owned).collect();
-        let first = |topic: &str| topic.strip_suffix(":0").unwrap_or(topic).to_owned();
-        let topic = options.topic.as_deref().or(kind.usual_topic()).map(first);
-        let Some(topic) = topic.filter(|_| !fields.is_empty()) else {
-            return Err(LogKind::NeedsChannel.at(file));
-        };
+        let Choice { topic, fields, found } = Choice::of(options, kind)?;
         Ok(Self {
             log: open(&options.input, kind, damage(options.accept_cut))?,
             file,
@@ -72,6 +72,7 @@ impl Channel {
             samples: 0,
             values: Vec::new(),
             of_times: None,
+            found,
             notes: Vec::new(),
         })
     }
@@ -194,6 +195,25 @@ impl Channel {
         }
     }
 
+    /// Returns the note that says which channels are read, as the user named none.
+    fn note_of(&self, found: &Found) -> Words {
+        let units: Vec<Option<String>> = (self.units().into_iter().zip(&self.fields))
+            .map(|(unit, field)| {
+                let by_name =
+                    || unit_of_name(&format!("{}.{field}", self.topic)).map(str::to_owned);
+                unit.or_else(by_name)
+            })
+            .collect();
+        let channels = with_units(&self.fields, &units);
+        let rate = found.rate.map_or(String::new(), |rate| format!(", {rate:.0} Hz"));
+        let others = match &found.others[..] {
+            [] => String::new(),
+            others => format!("; other sensors: {}", few(others)),
+        };
+        let note = format!("{}: reads {channels} of {}{rate}{others}; ", self.file, self.topic);
+        Words::from(note).setting("columns").text(" chooses others")
+    }
+
     /// Returns the error for a recording without samples: either the log lacks the topic, or the topic has no messages.
     fn nothing(&self) -> Error {
         let topic = self.topic.clone();
@@ -255,6 +275,9 @@ impl Source for Channel {
         self.choose_times(chunk);
         self.notes = self.log.faults().notes().into_iter().map(Words::from).collect();
         self.notes.extend(self.of_times.clone());
+        if let Some(found) = &self.found {
+            self.notes.insert(0, self.note_of(found));
+        }
         Ok(())
     }
 

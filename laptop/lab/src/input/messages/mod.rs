@@ -3,6 +3,7 @@
 //! The formats themselves are in the crate `flight-logs`.
 
 mod channel;
+mod choice;
 mod overview;
 mod stamp;
 
