@@ -305,7 +305,7 @@ fn six_axes_get_the_bank_that_flew_in_every_loop() {
     let (directory, log) = file("log.csv", log);
     let path = directory.path().join("flight.toml");
     let page =
-        ran!("advise {log} --loop-bandwidth 5 --evaluations 20 -o {}", path.display()).stderr;
+        ran!("advise {log} --loop-bandwidth 5 --evaluations 20 -o {}", path.display()).output;
     let written = std::fs::read_to_string(&path).unwrap();
     for words in
         ["scheme = \"sod\"", "corner = 200", "keyframe_every = 250", "step_bits = 4", "start = 0"]

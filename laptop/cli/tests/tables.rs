@@ -127,10 +127,10 @@ fn arrays_of_numpy_are_read() {
 fn other_files_are_named() {
     for (start, words) in [
         (&b"PK\x03\x04\x14\x00\x06\x00\x08\x00\x00\x00\x21\x00"[..], "spreadsheet"),
-        (b"\xa3\x95\x80\x80\x59FMT\x00BBnNZ\x00\x00\x00\x00", "a log needs --topic and --field"),
-        (b"#ROSBAG V2.0\nE", "a log needs --topic and --field"),
-        (b"\x89MCAP0\r\n\x01\x00\x00", "a log needs --topic and --field"),
-        (b"SQLite format 3\0\x10\0", "a log needs --topic and --field"),
+        (b"\xa3\x95\x80\x80\x59FMT\x00BBnNZ\x00\x00\x00\x00", "the log ends within a message"),
+        (b"#ROSBAG V2.0\nE", "the bag ends within the record"),
+        (b"\x89MCAP0\r\n\x01\x00\x00", "the file ends within the record"),
+        (b"SQLite format 3\0\x10\0", "shorter than its head"),
         (b"\x00\x01\x02\x03\x04\x05", "binary, no table"),
         (b"\x1f\x8b\x08\x00", "cannot be unpacked"),
     ] {

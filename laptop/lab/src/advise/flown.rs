@@ -397,7 +397,7 @@ mod tests {
         assert_eq!(own.everywhere.len(), 18);
         assert!(LOSSES.iter().all(|loss| objection("sod", *loss, rate).is_none()));
         let here = error("sod", rate, LOSSES[0]).unwrap();
-        assert_eq!((here.coded, here.plain, here.flights, here.lost), (5.682, 5.6, 20, 0));
+        assert_eq!((here.coded, here.plain, here.flights, here.lost), (5.676, 5.6, 20, 0));
         let minutes = minutes("sod", rate).unwrap();
         assert_eq!((minutes.flights, minutes.lost), (12, 0));
         assert!(
