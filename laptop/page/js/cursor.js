@@ -5,7 +5,9 @@ import { at, element, fine } from "./dom.js";
 import { lowerBound } from "./pyramid.js";
 
 const box = element("div", { className: "cursor" });
-const signed = (count) => (count > 0 ? `+${count}` : String(count).replace("-", "−"));
+/** Windows in which the table would hide the signal: there it stands below the picture. */
+const narrow = matchMedia("(max-width: 59.99rem)");
+const signed = (count) => (count > 0 ? `+${count}` : String(count));
 
 /** Spikes of a run from a sample to before another one: less the downward ones where a code has such. */
 function spikes({ arrays: { sample, up }, isSigned, isPart }, from, to) {
@@ -38,11 +40,12 @@ function rows({ recording: { name, arrays: { values } }, runs, pointed, mark }) 
   ];
 }
 
-/** Shows the table on the side of the signal where the cursor is not. */
+/** Shows the table on the side of the signal where the cursor is not, or below the picture. */
 function showTable(plots) {
   const { upper, pointed, mark, times, recording: { unit } } = plots;
   if (pointed === undefined || !upper) return box.remove();
-  if (box.parentElement !== upper.over) upper.over.append(box);
+  const host = narrow.matches ? at("below") : upper.over;
+  if (box.parentElement !== host) host.append(box);
   const time = times.at(pointed);
   box.dataset.side = time > (plots.view[0] + plots.view[1]) / 2 ? "left" : "right";
   const heads = mark === undefined ? [time] : [time, times.at(mark), time - times.at(mark)];

@@ -8,7 +8,7 @@ import { changed, loadRequest, openRequest, state } from "./state.js";
 import { noteUnit, unitOf } from "./units.js";
 
 /** Bytes of a file whose beginning is shown while the whole is read, and bytes of that beginning. */
-const LARGE = 24e6, BEGINNING = 4e6;
+const LARGE = 24e6, BEGINNING = 2e6;
 
 /** Who codes a recording that was read. */
 let onRead = async () => {};
@@ -146,7 +146,7 @@ export const load = () => whileBusy(loadNow);
 
 async function loadNow() {
   const asked = state.channel, { opened, library } = state;
-  const onProgress = (reading) => library === state.library && change({ reading });
+  const onProgress = (reading) => library === state.library && change({ reading: { ...reading, field: asked.field } });
   change({ fileError: undefined, reading: { done: 0, total: 1 } });
   try {
     const recording = await read(library, loadRequest(opened, asked), { opened, asked, onProgress });

@@ -21,7 +21,8 @@ function rateWords({ rate, uneven }) {
 
 function about({ reading, recording, asked }) {
   if (reading) {
-    const { done, total } = reading, name = asked?.files[0]?.name ?? "";
+    // A log is read twice: for what it holds, and for the channel.
+    const { done, total } = reading, file = asked?.files[0]?.name ?? "", name = reading.field ? `${reading.field} of ${file}` : file;
     const shown = recording?.isBeginning ? ", of which the beginning is shown" : "";
     return total > 1 ? `reading ${name} … ${Math.round((100 * done) / total)} % of ${(total / 1e6).toFixed(0)} MB${shown}` : `reading ${name} …${shown}`;
   }

@@ -26,7 +26,7 @@ export const state = {
   table: {},
   /** Whether the whole messages of a damaged log are taken, and whether that log is damaged. */
   acceptsCut: false, isDamaged: false,
-  /** How far reading is, and why it failed. */
+  /** How far reading is, { done, total, field }, and why it failed. */
   reading: undefined, fileError: undefined,
   /** What a link names that is not here: { file, channel, settings }. */
   awaited: undefined,

@@ -53,6 +53,23 @@ export const steps = {
     }
   },
 
+  async "has slider and chart in view together on a phone, with the values at a tap below them"() {
+    const page = await opened({ ...SIZES.phone, isFolded: true }, "");
+    await axesDrawn(page);
+    const box = (id) => page.locator(id).boundingBox(), { height } = SIZES.phone.viewport;
+    const stack = await box("#stack"), slider = await box("#main-parameter input[type=range]");
+    assert(stack.y >= 0 && stack.height > 0.45 * height && slider.y + slider.height <= height, `chart from ${stack.y} to ${stack.y + stack.height}, slider to ${slider.y + slider.height}`);
+    const signal = await page.locator("#plots .u-over").first().boundingBox();
+    await page.mouse.click(signal.x + 100, signal.y + 50);
+    await page.waitForSelector(".cursor");
+    const table = await box(".cursor"), plots = await box("#plots");
+    assert(table.y >= plots.y + plots.height && table.x >= 0 && table.x + table.width <= SIZES.phone.viewport.width, JSON.stringify(table));
+    await apart(page, "a tap on a phone");
+    await accessible(page, "a tap on a phone");
+    await picture(page, "tap", { fullPage: true });
+    await page.context().close();
+  },
+
   async "drags the threshold on the signal, zooms in the overview, and shows values under the pointer"() {
     const page = await opened({ viewport: WHOLE.wide });
     await axesDrawn(page);
@@ -156,7 +173,7 @@ export const steps = {
       assert.deepEqual(await cursor(page, name), [values[place], marked[place], values[place] - marked[place]].map(short), name);
     }
     assert.deepEqual(await cursor(page, "B SoD, error"), [values[2] - values[0], marked[2] - marked[0], values[2] - values[0] - (marked[2] - marked[0])].map(short));
-    for (const [place, name] of ["A SF, spikes", "B SoD, spikes"].entries()) assert.equal((await cursor(page, name))[2].replace("−", "-").replace("+", ""), String(spikes[place]), name);
+    for (const [place, name] of ["A SF, spikes", "B SoD, spikes"].entries()) assert.equal((await cursor(page, name))[2].replace("+", ""), String(spikes[place]), name);
     assert(spikes[1] !== 0, "spikes between mark and cursor");
     assert.match(await page.textContent(".cursor thead"), /cursor[\d.]+ s\s*mark[\d.]+ s\s*difference[\d.]+ s/);
     await apart(page, "a cursor");
