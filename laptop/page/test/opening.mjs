@@ -28,17 +28,18 @@ export const steps = {
     ]) assert.deepEqual(wanted(topics), { topic, fields }, JSON.stringify(topics));
   },
 
-  async "opens ten logs of seven formats on their gyroscope"() {
+  async "opens sixteen logs of nine formats on their gyroscope"() {
     const page = await opened();
-    const made = { "px4.ulg": px4(), "newer.ulg": px4Raw(), "one.ulg": ulog(), "imu.bag": bag(), "imu.mcap": mcap(), "euroc.csv": Buffer.from(euroc()), "decoded.csv": Buffer.from(decoded()) };
+    const made = { "px4.ulg": px4(), "newer.ulg": px4Raw(), "one.ulg": ulog(), "imu.bag": bag(), "imu.mcap": mcap(), "euroc.csv": Buffer.from(euroc()), "decoded.csv": Buffer.from(decoded()), "acc.bbl": blackbox(4000) };
     let right = 0;
     for (const [name, topic, field, axes] of [
-      ["hexarotor.csv", "", "gyro_x", 6], ["euroc.csv", "", "w_RS_S_x [rad s^-1]", 6], ["decoded.csv", "", "gyroADC[0] (deg/s)", 3],
+      ["hexarotor.csv", "", "gyro_x", 6], ["vtol_at_rest.csv", "", "gyro_x", 6], ["euroc.csv", "", "w_RS_S_x [rad s^-1]", 6], ["decoded.csv", "", "gyroADC[0] (deg/s)", 3],
       ["px4.ulg", "sensor_combined", "gyro_rad[0]", 6], ["newer.ulg", "sensor_gyro", "x", 3], ["one.ulg", "gyro", "rate", 0],
-      ["log.bin", "IMU", "GyrX", 2], ["log.tlog", "RAW_IMU", "xgyro", 6], ["imu.bag", "/imu/data", "angular_velocity.x", 6],
+      ["log.bin", "IMU", "GyrX", 2], ["log.log", "IMU", "GyrX", 2], ["log.db3", "/imu", "rate", 0], ["log.tlog", "RAW_IMU", "xgyro", 6], ["imu.bag", "/imu/data", "angular_velocity.x", 6],
       ["imu.mcap", "/imu/data", "angular_velocity.x", 6], ["log.bbl", "main", "gyroADC[0]", 3],
+      ["acc.bbl", "main", "gyroADC[0]", 6], ["log.bag", "/imu", "rate", 0],
     ]) {
-      const bytes = made[name] ?? readFileSync(name === "hexarotor.csv" ? join(DATA, name) : join(LOGS, name));
+      const bytes = made[name] ?? readFileSync(join(name.endsWith(".csv") ? DATA : LOGS, name));
       await drop(page, { name, bytes });
       assert.equal(await page.textContent("#file-error"), "", name);
       assert.deepEqual([await page.inputValue("#topic"), await page.inputValue("#field")], [topic, field], name);
