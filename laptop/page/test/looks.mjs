@@ -49,6 +49,22 @@ export const steps = {
       }
       // One time axis for all, shown once, below a signal that is as wide as everything else.
       assert.equal(await page.evaluate(() => globalThis.spikewire.plots.all.filter((own) => own.axes[0].label).length), 1);
+      // No number stands on another one, however low the strips are.
+      if (name === "low") {
+        const crowded = () => page.evaluate(() => globalThis.spikewire.plots.all.slice(1).flatMap((own) => {
+          const axis = own.axes[1], places = (axis._values ?? []).map((words, at) => words && own.valToPos(axis._splits[at], "y")).filter((at) => at !== "").sort((a, b) => a - b);
+          return places.filter((at, place) => place && at - places[place - 1] < 10);
+        }));
+        for (const scheme of ["sf", "grf", "hsa"]) {
+          await page.click("#add");
+          await page.selectOption("#scheme", scheme);
+          await settled(page);
+        }
+        assert.deepEqual(await crowded(), []);
+        await drawer(page, "#show-spectrum");
+        await page.waitForTimeout(300);
+        assert.deepEqual(await crowded(), []);
+      }
       await page.context().close();
     }
   },
