@@ -43,24 +43,24 @@ export function setAnswer(recording, field, unit) {
 
 /** Notes the unit of a channel that was read, which a log's head may tell; returns whether it is news. */
 export function noteUnit(opened, topic, field, unit) {
-  opened.told ??= {};
-  const key = `${topic} ${field}`, isNews = opened.told[key]?.name !== unit?.name;
-  opened.told[key] = unit;
+  opened.unitsRead ??= {};
+  const key = `${topic} ${field}`, isNews = opened.unitsRead[key]?.name !== unit?.name;
+  opened.unitsRead[key] = unit;
   return isNews;
 }
 
-/** The unit that the log or the name of its field tells. One that no such sensor has, as m/s read out of m s^-2, is none. */
-function told(recording, field) {
+/** The unit that the log or the name of its field shows. One that no such sensor has, as m/s read out of m s^-2, is none. */
+function unitInLog(recording, field) {
   const { opened, topic } = recording, isSensor = isInertial(recording, field), isRate = sensorOf(recording, field) === 0;
-  const own = opened.topics.find(({ name }) => name === topic), units = [opened.told?.[`${topic} ${field}`], own?.units[own.fields.indexOf(field)]];
+  const own = opened.topics.find(({ name }) => name === topic), units = [opened.unitsRead?.[`${topic} ${field}`], own?.units[own.fields.indexOf(field)]];
   const unit = units.find((each) => each && (!isSensor || (each.perSi && each.isRate === isRate)));
   if (unit || !isSensor) return unit;
   return opened.example || SI.test(opened.file) ? unitsOf(recording, field)[0] : undefined;
 }
 
-/** The unit that is told, or the one that the user answered. */
+/** The unit that the log shows, or the one that the user answered. */
 const known = (recording, field) =>
-  told(recording, field) ?? (isInertial(recording, field) ? unitsOf(recording, field).find(({ name }) => name === answer(recording, field)) : undefined);
+  unitInLog(recording, field) ?? (isInertial(recording, field) ? unitsOf(recording, field).find(({ name }) => name === answer(recording, field)) : undefined);
 
 /** How many of a channel's unit are 1 rad/s or 1 m/s²; undefined where that is not known. */
 export const scaleOf = (recording, field) => known(recording, field)?.perSi ?? undefined;
@@ -74,5 +74,5 @@ export const isInertial = (recording, field) => groupOf(recording, field) !== un
 /** Whether the user is to say the unit of the channel that is shown. */
 export const isAsked = () => {
   const { recording } = state;
-  return Boolean(recording) && isInertial(recording, recording.field) && !told(recording, recording.field);
+  return Boolean(recording) && isInertial(recording, recording.field) && !unitInLog(recording, recording.field);
 };

@@ -66,8 +66,9 @@ export async function opened({ colorScheme = "light", isMobile, isFolded, ...opt
     const create = URL.createObjectURL;
     URL.createObjectURL = (blob) => create.call(URL, (globalThis.blob = blob));
   });
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && !message.text().includes(WAITS) && said.push(message.text()));
-  page.on("pageerror", (error) => said.push(String(error)));
+  const note = (words) => words.includes(WAITS) || said.push(words);
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && note(message.text()));
+  page.on("pageerror", (error) => note(String(error)));
   page.on("request", (request) => {
     const asked = request.url();
     if (!asked.startsWith(url) && !/^(blob|data):/.test(asked)) said.push(`a request off the page: ${asked}`);
