@@ -164,7 +164,8 @@ fn topic(name: &str, fields: &[String], count: u64, about: &str) -> Value {
         "" => unit_of_name(field),
         topic => unit_of_name(&format!("{topic}.{field}")),
     };
-    let units: Vec<_> = fields.iter().map(unit).collect();
+    let units: Vec<_> =
+        fields.iter().map(|field| unit(field).map(crate::catalogue::unit)).collect();
     json!({ "name": name, "fields": fields, "units": units, "count": count, "about": about })
 }
 
@@ -235,7 +236,7 @@ pub(crate) fn load(channel: Channel, place: usize) -> Result<Value> {
         "rate": recording.rate,
         "uneven": uneven,
         "seconds": recording.seconds(),
-        "unit": recording.unit(),
+        "unit": recording.unit().map(crate::catalogue::unit),
         "notes": notes.collect::<Vec<_>>(),
         "segments": recording.segments.iter().map(|own| own.start).collect::<Vec<_>>(),
         "gaps": gaps(&recording),
