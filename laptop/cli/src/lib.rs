@@ -32,6 +32,7 @@ enum Command {
     Encode(encode::Encode),
     Decode(decode::Decode),
     Info(info::Info),
+    Samples(commands::samples::Samples),
     Plot(commands::plot::Plot),
     Dataset(commands::dataset::Dataset),
     Emit(commands::emit::Emit),
@@ -58,6 +59,7 @@ A scheme for a log:
 
 Recordings:
   info     List the content of logs and tables
+  samples  Write channels of a log as a CSV table
   plot     Draw a signal, its spikes and what they decode to
   dataset  Encode many logs to Parquet files, with a manifest
 
@@ -108,6 +110,7 @@ pub fn run() -> ExitCode {
         Command::Plot(options) => commands::plot::run(&options),
         Command::Network(options) => commands::network::run(&options),
         Command::Info(options) => info::run(&options),
+        Command::Samples(options) => commands::samples::run(&options),
         Command::Signal(options) => signal::run(&options),
         Command::Advise(options) => commands::advise::run(&options),
         Command::Emit(options) => commands::emit::run(&options),

@@ -176,11 +176,15 @@ enum Converted {
 }
 
 impl Converted {
-    /// Reads the network's file. If `outputs` of the training framework are given, they show by which rule its neurons
+    /// Converts the network of a file. If `outputs` of the training framework are given, they show by which rule its neurons
     /// step, and the rule is reported on standard error.
-    fn read(options: &Network, driven: &Driven, outputs: Option<&Outputs>) -> Result<Self> {
-        let Network { trained: path, target, dt, rule, .. } = options;
-        let file = File::read(path)?;
+    fn from_file(
+        file: File,
+        options: &Network,
+        driven: &Driven,
+        outputs: Option<&Outputs>,
+    ) -> Result<Self> {
+        let Network { target, dt, rule, .. } = options;
         let seconds = driven.step_us.map(|step| step * 1e-6);
         let mut asked = rule.asked(*dt);
         if let Some(outputs) = outputs {
@@ -237,8 +241,9 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let framework = framework(options)?;
     let framework = framework.as_ref();
-    let converted = Converted::read(options, &driven, framework)
-        .map_err(|error| error.context(name.clone()))?;
+    let file = File::read(path)?;
+    let converted = Converted::from_file(file, options, &driven, framework)
+        .with_context(|| name.clone())?;
     driven.check(converted.inputs(), options.scheme).with_context(|| name.clone())?;
     let held_out = options.held_out.as_ref().map(|path| {
         let input = Input { input: path.clone(), ..input.clone() };
