@@ -789,9 +789,9 @@ fn sixteen_late_frames_show_a_session_that_is_used_again() {
         }
     }
     // Bytes that seem to be a short frame are long forgotten when the next frame was delivered.
-    let noise = vec![0x60; 3];
-    let noisy = old[..40].iter().chain([&noise]).chain(&old[40..41]);
-    let (taken, reader) = read(noisy.chain(&old[10..14]).chain(&old[41..]));
+    let stray = vec![0x60; 3];
+    let before = old[..40].iter().chain([&stray]).chain(&old[40..41]);
+    let (taken, reader) = read(before.chain(&old[10..14]).chain(&old[41..]));
     assert_eq!((taken.len(), reader.late()), (60, 4));
     // One that is delivered between them ends the row.
     let mixed = new[1..=14].iter().chain(&old[40..41]).chain(&new[1..=14]).chain(&old[41..]);

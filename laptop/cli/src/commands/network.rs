@@ -242,8 +242,8 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     let framework = framework(options)?;
     let framework = framework.as_ref();
     let file = File::read(path)?;
-    let converted = Converted::from_file(file, options, &driven, framework)
-        .with_context(|| name.clone())?;
+    let converted =
+        Converted::from_file(file, options, &driven, framework).with_context(|| name.clone())?;
     driven.check(converted.inputs(), options.scheme).with_context(|| name.clone())?;
     let held_out = options.held_out.as_ref().map(|path| {
         let input = Input { input: path.clone(), ..input.clone() };
