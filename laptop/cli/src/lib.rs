@@ -1,6 +1,9 @@
 //! The command line of the program `spikewire`: parses arguments and prints text. The work itself is done by the
 //! library `lab`.
 
+#[macro_use]
+mod words;
+
 mod commands;
 mod inputs;
 mod live;
@@ -8,7 +11,6 @@ mod options;
 mod panel;
 mod report;
 mod stop;
-mod words;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use commands::{capture, convert, decode, encode, info, listen, score, signal};
@@ -121,7 +123,7 @@ pub fn run() -> ExitCode {
         // A reader that closes the pipe early, such as `head`, is no error.
         Err(error) if words::is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {}", words::of(&error));
+            say!("error: {}", words::of(&error));
             ExitCode::from(FAILURE)
         }
     }

@@ -15,7 +15,7 @@ use spikewire::link::{self, Received, Transmitter, Withheld};
 use spikewire_flight::{FlightError, UnitSize};
 use std::num::NonZeroU32;
 
-pub use spikewire_flight::{Channel, Filter, Filtering, Flight, Parts, rust};
+pub use spikewire_flight::{Channel, Filter, Filtering, Flight, Parts, rust, visible};
 
 impl From<FlightError> for crate::Error {
     fn from(error: FlightError) -> Self {
