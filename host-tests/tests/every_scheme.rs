@@ -158,7 +158,7 @@ fn is_counted_where_the_docs_count() {
     );
     // Each code with six signals.
     let words = format!("With {count} codes that is {} problems", count * 6);
-    assert!(read("docs/tuning.md").contains(&words), "docs/tuning.md does not say: {words}");
+    assert!(read("SAFETY.md").contains(&words), "SAFETY.md does not say: {words}");
 }
 
 /// Python decodes weights in the place of spikes by the kind of a code; which kind it is cannot be derived.

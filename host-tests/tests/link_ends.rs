@@ -350,6 +350,35 @@ fn a_sender_that_changes_its_fingerprint_is_not_believed() {
     assert_eq!(heard.last(), Some(&None), "a full frame tells it");
     let other = Withheld::Description { own, sender: Fingerprint::from_bits(9) };
     assert_eq!(hand.receiver.withheld(0), Some(other));
+    hand.link = hand.link.with_fingerprint(own);
+    assert!(
+        (0..600).any(|_| hand.keyframe(5) == Some(5)),
+        "and believed once it has the right one"
+    );
+}
+
+/// Keyframes that come once more in a frame are compared, also those of a code whose keyframes hold no value before them.
+#[test]
+fn keyframes_that_come_twice_in_a_frame_are_compared() {
+    for (addresses, contradicted) in
+        [(&[0, 1][..], 0), (&[0, 0], 1), (&[0, 1, 0, 1], 2), (&[0, 1, 1, 0, 1], 3)]
+    {
+        let mut receiver = Receiver::<_, 2>::new(&CONTRAST);
+        let mut link = Transmitter::new(Coding::for_channels(2, PERIOD), Session::counted(7));
+        let keyframes = (0..).zip(addresses);
+        let items = keyframes
+            .map(|(value, &address)| Item::Keyframe(Keyframe::new(tick(1), address, value as i16)));
+        let (mut source, mut buffer) = (FromItems(items), [0; MAX_FRAME]);
+        let mut reader = Reader::<MAX_FRAME>::new();
+        let mut frames = 0;
+        while let Some(mut bytes) = link.next_frame(&mut source, &mut buffer).unwrap() {
+            receiver.apply(&reader.next_frame(&mut bytes).unwrap(), |_, _, _| ());
+            frames += 1;
+        }
+        assert_eq!(frames, 1);
+        assert_eq!((receiver.compared(), receiver.contradicted()), (contradicted, contradicted));
+        assert_eq!(receiver.exact(0).is_some(), contradicted == 0, "{addresses:?}");
+    }
 }
 
 /// A frame without a fingerprint says nothing of the sender's schemes: what was known of them stays so.

@@ -733,6 +733,44 @@ fn a_first_frame_is_a_start_unless_it_is_the_one_that_came() {
     let (taken, _) = read(old[..20].iter().chain(&again[15..]));
     assert_eq!(taken[20], (3, 19, 0, true));
     assert!(taken[21..].iter().all(goes_on));
+    // The first frame that came stays known.
+    let (taken, reader) = read(old[..20].iter().chain(&again[15..]).chain(&old[..1]));
+    assert_eq!((taken.len(), reader.late()), (20 + 21, 4 + 1));
+    // So does one of an earlier session, of which another first frame is a start.
+    let (between, again) = (at(90_000_000, 2), at(1_000, 3));
+    let (taken, reader) = read(old[..20].iter().chain(&between[..3]).chain(&again));
+    assert_eq!((taken[23], taken.len(), reader.late()), ((3, 0, 0, true), 63, 0));
+    assert!(taken[24..].iter().all(goes_on));
+    // It is none of the next session's, whose own first frame may be late.
+    let (taken, reader) =
+        read(old[..20].iter().chain(&between[1..4]).chain(&between[..1]).chain(&between[4..]));
+    assert_eq!((taken.len(), reader.late()), (20 + 39, 1));
+}
+
+/// A reader that joined late knows no first frame: one that comes is late by up to sixteen frames and 65 536 µs, and beyond
+/// that of another start.
+#[test]
+fn a_first_frame_that_nobody_knows_is_told_by_number_and_time() {
+    let old = frames_of(session_from(1_000), 1, 40);
+    for (last, tick, is_late) in [
+        (1, 0, true),
+        (15, 0, true),
+        (16, 0, false),
+        (30, 0, false),
+        (3, 3_000 + 65_536, true),
+        (3, 3_000 + 65_537, false),
+        (3, 9_000_000, false),
+    ] {
+        let mut framer = Framer::new(Coding::for_channels(6, 1_000), session_from(1_000));
+        let mut buffer = [0; 64];
+        let mut first = framer.start(Tick::from(tick), &mut buffer).unwrap();
+        first.event(event(tick, 2, true)).unwrap();
+        let first = first.finish().to_vec();
+        let (taken, reader) = read(old[1..=last].iter().chain([&first]));
+        assert_eq!(reader.late(), u32::from(is_late), "{last} {tick}");
+        let start = (2, tick / 1_000, 0, true);
+        assert_eq!(taken.get(last), (!is_late).then_some(&start), "{last} {tick}");
+    }
 }
 
 /// Sixteen late frames in a row are those of another start; fewer are late, whatever comes then.
@@ -750,6 +788,11 @@ fn sixteen_late_frames_show_a_session_that_is_used_again() {
             assert_eq!(taken[40], (1, 40, 0, false), "{late}");
         }
     }
+    // Bytes that seem to be a short frame are long forgotten when the next frame was delivered.
+    let stray = vec![0x60; 3];
+    let before = old[..40].iter().chain([&stray]).chain(&old[40..41]);
+    let (taken, reader) = read(before.chain(&old[10..14]).chain(&old[41..]));
+    assert_eq!((taken.len(), reader.late()), (60, 4));
     // One that is delivered between them ends the row.
     let mixed = new[1..=14].iter().chain(&old[40..41]).chain(&new[1..=14]).chain(&old[41..]);
     let (taken, reader) = read(old[..40].iter().chain(mixed));

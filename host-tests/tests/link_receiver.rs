@@ -166,11 +166,142 @@ impl Line {
         }
         values
     }
+
+    /// Sends items whose frames are lost.
+    fn lose(&mut self, items: impl IntoIterator<Item = Item>) {
+        let (mut source, mut buffer) = (FromItems(items.into_iter()), [0; MAX_FRAME]);
+        while self.transmitter.next_frame(&mut source, &mut buffer).unwrap().is_some() {}
+    }
+}
+
+/// A spike at this time.
+fn spike(micros: u64, address: u16) -> Item {
+    Item::Event(Event { tick: Tick::from_micros(micros), address, polarity: Polarity::Up })
 }
 
 /// A spike of channel 1 at this time.
 fn spike_at(micros: u64) -> Item {
-    Item::Event(Event { tick: Tick::from_micros(micros), address: 1, polarity: Polarity::Up })
+    spike(micros, 1)
+}
+
+fn beat_at(micros: u64) -> Item {
+    Item::Heartbeat { tick: Tick::from_micros(micros), address: 0 }
+}
+
+/// Spikes that no encoder fires together, or whose sample is over, leave no value exact; nor is one exact that has not fired.
+#[test]
+fn spikes_that_make_no_sample_are_not_exact() {
+    const BOTH: [bool; 2] = [true; 2];
+    const NONE: [bool; 2] = [false; 2];
+    fn first(sample: u64) -> Item {
+        spike(sample * 1_000, 4)
+    }
+    fn second(sample: u64) -> Item {
+        spike(sample * 1_000, 13)
+    }
+    for (items, exact, misfits) in [
+        (vec![first(1), second(1), first(2), second(2)], BOTH, 0),
+        (vec![first(1), first(2)], [true, false], 0),
+        (vec![beat_at(1_000), first(2), second(2)], BOTH, 0),
+        // Two neurons of a channel, by rising address.
+        (vec![first(1), second(1), spike(2_000, 2), spike(2_000, 5), second(2)], [false, true], 1),
+        // Another sample of the same tick.
+        (vec![first(1), second(1), first(2), second(2), spike(2_000, 5)], NONE, 1),
+        // The heartbeat says that all events of its tick have come.
+        (vec![first(1), second(1), first(2), second(2), beat_at(2_000), first(2)], NONE, 1),
+    ] {
+        let mut receiver = Receiver::<_, 2>::new(&POSITION);
+        let mut line = Line::new(18, PERIOD);
+        for &item in &items {
+            line.send([item], &mut receiver);
+        }
+        receiver.advance(Tick::from(3_000), |_, _, _| ());
+        let heard = [0, 1].map(|channel| receiver.exact(channel).is_some());
+        assert_eq!((heard, receiver.misfits()), (exact, misfits), "{items:?}");
+    }
+}
+
+/// Ten samples of a rate code with an event each, in one channel, the last of them at 9 ms.
+fn ten_samples() -> (Line, Receiver<&'static Hough<f32, 7>, 2>) {
+    let (mut line, mut receiver) = (Line::new(2, PERIOD), Receiver::new(&HOUGH));
+    for sample in 0..10 {
+        line.send([spike_at(sample * 1_000)], &mut receiver);
+    }
+    assert!(receiver.exact(1).is_some());
+    (line, receiver)
+}
+
+/// What comes of a sample that time has ended is a misfit, also where nobody can count how many samples ago that was.
+#[test]
+fn what_comes_after_its_sample_is_over_is_a_misfit() {
+    // Samples after the tenth.
+    for (over, comes, is_late) in
+        [(1, 2, false), (3, 1, true), (3, 3, false), (300, 500, false), (1_000, 500, true)]
+    {
+        for item in [spike_at as fn(u64) -> Item, beat_at] {
+            let (mut line, mut receiver) = ten_samples();
+            receiver.advance(Tick::from(9_000 + over * PERIOD), |_, _, _| ());
+            line.send([item(9_000 + comes * 1_000)], &mut receiver);
+            let heard = (receiver.misfits(), receiver.exact(1).is_none());
+            assert_eq!(heard, (u32::from(is_late), is_late), "{over} {comes}: {:?}", item(0));
+        }
+    }
+}
+
+/// Samples without events count, from the first event after a loss on: seven of them fill the filter.
+#[test]
+fn silent_samples_after_a_loss_are_whole() {
+    for (next, is_exact) in [(17, false), (18, true), (30, true)] {
+        let (mut line, mut receiver) = ten_samples();
+        receiver.mark_stale();
+        line.send([spike_at(10_000)], &mut receiver);
+        assert_eq!(receiver.withheld(1), Some(Withheld::Samples(7)));
+        line.send([spike_at(next * 1_000)], &mut receiver);
+        assert_eq!(receiver.exact(1).is_some(), is_exact, "{next}");
+    }
+}
+
+/// Four sub-timesteps of 100 µs, with a clock of 2 %: beyond one sample they are told apart by the measured pace alone.
+#[test]
+fn the_pace_is_measured_from_heartbeats_and_events() {
+    const SHORT: u64 = 1_000_000;
+    static FOUR: FirstSpike<f32, 4> = FirstSpike::linear(0.0..=3.0);
+    let every: Vec<u64> = (1..=100).collect();
+    // Heartbeats, events, and the event that is told apart or not, each in a sample.
+    for (beats, events, last, is_known) in [
+        (&[0][..], &[][..], 1, true),
+        (&[0], &[], 2, false),
+        (&[0], &every[..], 105, true),
+        (&[0, 40], &[], 45, true),
+        (&[0, 100], &[], 105, false),
+        // Two pieces of 20 samples, and between them more than can be counted.
+        (&[0, 20, 120, 140], &[], 150, true),
+        (&[0, 20, 120, 140], &[], 157, false),
+        (&[0, 40], &[], 57, true),
+    ] {
+        let mut receiver = Receiver::<_, 1>::new(&FOUR).with_slot_ticks(100);
+        let mut line = Line::new(1, PERIOD);
+        let at = |sample: u64| SHORT + sample * u64::from(PERIOD);
+        for &beat in beats {
+            line.send([beat_at(at(beat))], &mut receiver);
+        }
+        for &event in events.iter().chain([&last]) {
+            line.send([spike(at(event) + 100, 0)], &mut receiver);
+        }
+        let end = Tick::from_micros(at(last + 1));
+        receiver.advance(end, |_, _, _| ());
+        let why = (!is_known).then_some(Withheld::Clock);
+        assert_eq!(receiver.withheld(0), why, "{beats:?} {} {last}", events.len());
+        // After a loss nothing is decoded until the next heartbeat, however well the pace is known.
+        line.lose([beat_at(at(last + 1))]);
+        line.send([spike(at(last + 2) + 100, 0)], &mut receiver);
+        receiver.advance(end + 2 * PERIOD, |_, _, _| ());
+        assert_eq!(receiver.withheld(0), Some(Withheld::Heartbeat), "{beats:?} {last}");
+        line.send([beat_at(at(last + 3))], &mut receiver);
+        line.send([spike(at(last + 4) + 100, 0)], &mut receiver);
+        receiver.advance(end + 4 * PERIOD, |_, _, _| ());
+        assert_eq!(receiver.withheld(0), None, "{beats:?} {last}");
+    }
 }
 
 /// An event without room belongs to a channel that is not exact until it has recovered.

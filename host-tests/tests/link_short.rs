@@ -693,6 +693,18 @@ fn a_short_frame_is_read_behind_the_one_before_alone() {
     while reader.next_frame(&mut input).is_some() {}
     assert_eq!((reader.frames(), reader.late(), reader.repeated()), (100, 13, 1));
     assert_eq!(reader.skipped(), 0);
+    // They are those of a sender that goes on, whatever was damaged before them.
+    let mut reader = Reader::<MAX_FRAME>::new();
+    let mut damaged = frames[100].clone();
+    damaged[2] ^= 1;
+    let late = frames[..100].iter().chain([&damaged]).chain(&frames[86..92]).chain(&frames[101..]);
+    let stream: Vec<u8> = late.flatten().copied().collect();
+    let mut input = &stream[..];
+    let mut starts = 0;
+    while let Some(received) = reader.next_frame(&mut input) {
+        starts += u32::from(received.is_start && !received.is_unread);
+    }
+    assert_eq!((starts, reader.late(), reader.lost_frames()), (1, 6, 1));
     let mut input = &frames[67][..];
     assert!(reader.next_frame(&mut input).is_some_and(|received| received.is_unread));
 }
@@ -739,6 +751,52 @@ fn a_damaged_frame_is_reported_at_once() {
             }
         }
         assert!(longer <= 2 * most_longer, "{longer}");
+    }
+}
+
+/// Each time that frames are damaged it is reported, once until the next frame.
+#[test]
+fn every_damage_is_reported_once() {
+    let mut line = Line::new(0);
+    let frames: Vec<_> = (0..12).map(|_| line.frame(&[line.step(Polarity::Up)])).collect();
+    let mut heard = Vec::new();
+    for (number, frame) in frames.iter().enumerate() {
+        let mut frame = frame.clone();
+        if [5, 6, 8].contains(&number) {
+            frame[2] ^= 1;
+        }
+        let mut bytes = &frame[..];
+        let mut unread = 0;
+        while let Some(received) = line.reader.next_frame(&mut bytes) {
+            unread += u32::from(received.is_unread);
+        }
+        heard.push(unread);
+    }
+    assert_eq!(heard, [0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0]);
+}
+
+/// The writer sends a short frame up to half of all counts after the one before; the reader takes one that is up to an
+/// eighth of them late.
+#[test]
+fn short_frames_reach_half_of_all_counts_ahead_and_an_eighth_back() {
+    // Counts of eleven bits at a period of 1000.
+    for (silence, is_short) in [(1_024, true), (1_025, false)] {
+        let mut line = Line::new(0);
+        let mut frames: Vec<_> = (0..5).map(|_| line.frame(&[line.step(Polarity::Up)])).collect();
+        line.now += (silence - 1) * 1_000;
+        frames.push(line.frame(&[line.step(Polarity::Up)]));
+        assert_eq!(FrameView::new(&frames[5]).is_err(), is_short, "{silence}");
+        assert!(FrameView::new(&frames[4]).is_err());
+    }
+    for (silence, late) in [(256, 1), (257, 0)] {
+        let mut line = Line::new(0);
+        let mut frames: Vec<_> = (0..5).map(|_| line.frame(&[line.step(Polarity::Up)])).collect();
+        line.now += (silence - 1) * 1_000;
+        frames.push(line.frame(&[line.step(Polarity::Up)]));
+        let stream = [frames.concat(), frames[4].clone()].concat();
+        let mut input = &stream[..];
+        while line.reader.next_frame(&mut input).is_some() {}
+        assert_eq!((line.reader.frames(), line.reader.late()), (6, late), "{silence}");
     }
 }
 

@@ -7,6 +7,7 @@ Writes and prints what `pico.mjs` does, which says more; but no cycles.
 
 import importlib
 import json
+import os
 import pathlib
 import struct
 import sys
@@ -24,6 +25,8 @@ directory, rtt, log = pathlib.Path(directory), symbol(elf, b"_SEGGER_RTT"), byte
 core.load(elf, module.VECTORS, getattr(module, "ENTRY", module.VECTORS))
 core.reset()
 bench = Bench(core, sensor)
+if recording := os.environ.get("RECORDING"):
+    bench.js(f"sensor.fly({json.dumps(pathlib.Path(recording).read_text())})")
 
 
 def drain():

@@ -4,12 +4,13 @@
 //
 // Writes to DIRECTORY what left the UART (`uart`), when each byte had left (`times`, µs), the sensor's samples (`samples`),
 // the log of the debug probe (`log`) and what was executed (`executed`), and prints what was seen as JSON. A fate strikes at its time, in ms: see FATES.
+// The file that RECORDING in the environment names, if there is one, is what the sensor measures: see `fly` in sensors.mjs.
 //
 // rp2040js has the RP2040's core, clocks, DMA, timers, GPIO and SPI. Here are added: the PL011's transmit FIFO, the time of a
 // byte on SPI, the ring oscillator's random bit, the end of a DMA transfer that is given up, the reset by the watchdog, and
 // wires that break.
 
-import { writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { LogLevel, ConsoleLogger, RP2040 } from "rp2040js";
 import { segments, symbol } from "./elf.mjs";
 import { Bmi323, Icm42688p } from "./sensors.mjs";
@@ -22,6 +23,7 @@ const SENSORS = { bmi323: Bmi323, icm42688p: Icm42688p };
 const image = segments(imagePath);
 const rtt = symbol(imagePath, "_SEGGER_RTT");
 const sensor = new SENSORS[sensorName](PINS);
+if (process.env.RECORDING) sensor.fly(readFileSync(process.env.RECORDING, "utf8"));
 const seen = { starts: [], instructions: 0, cycles: 0, shortestPause: 1e12, shortestGuard: 1e12 };
 const [uart, times, log] = [[], [], []];
 const executed = new Map();

@@ -1,5 +1,5 @@
-// Sensors on SPI or I2C as their master sees them: registers, FIFO, status and the interrupt line. The samples are a signal with
-// noise, in counts; each is kept with its time.
+// Sensors on SPI or I2C as their master sees them: registers, FIFO, status and the interrupt line. The samples are a recording's, or
+// a signal with noise, in counts; each is kept with its time.
 
 /// Six channels at a time in seconds: rates about x, y, z, then accelerations along them. Different on every axis.
 function signal(t, noise) {
@@ -39,9 +39,25 @@ class Sensor {
     return this.isOn && now - this.pulse < 10_000;
   }
 
+  /// Takes the samples from a recording from now on: lines of a time in s, three rates in rad/s and three accelerations in m/s².
+  /// A sample stands until the recording's next one, and the last one for ever.
+  fly(recording) {
+    this.recording = recording.trim().split("\n").map((line) => line.split(",").map(Number));
+    this.row = 0;
+  }
+
+  /// The counts of the recording at this time in ns, in the full scale that is configured.
+  recorded(at) {
+    const rows = this.recording;
+    while (this.row + 1 < rows.length && rows[this.row + 1][0] * 1e9 <= at) this.row += 1;
+    const [rate, acceleration] = this.fullScale;
+    const scales = Array.from({ length: 6 }, (_, axis) => (axis < 3 ? (rate * Math.PI) / 180 : acceleration * 9.80665) / 32768);
+    return scales.map((scale, axis) => Math.max(-32768, Math.min(32767, Math.round(rows[this.row][1 + axis] / scale))));
+  }
+
   take(at) {
     const noise = () => ((this.noise = (Math.imul(this.noise, 1664525) + 1013904223) >>> 0) >>> 30) - 2;
-    const fresh = signal(at / 1e9, noise);
+    const fresh = this.recording ? this.recorded(at) : signal(at / 1e9, noise);
     if (!this.isFrozen) this.last = fresh.map((count, axis) => (this.isHalfFrozen && axis >= 3 ? this.last[axis] : count));
     this.samples.push(`${Math.round(at / 1e3)},${this.last.join(",")}`);
     return this.last;
@@ -85,6 +101,11 @@ export class Bmi323 extends Sensor {
 
   get isSampling() {
     return this.words[0x21] >> 12 === 7 && this.words[0x20] >> 12 === 7;
+  }
+
+  /// In °/s and g, as GYR_CONF and ACC_CONF have them.
+  get fullScale() {
+    return [125 << ((this.words[0x21] >> 4) & 7), 2 << ((this.words[0x20] >> 4) & 7)];
   }
 
   sample(at) {
@@ -149,6 +170,11 @@ export class Icm42688p extends Sensor {
 
   get isSampling() {
     return this.bytes[0x4e] === 0x0f;
+  }
+
+  /// In °/s and g, as GYRO_CONFIG0 and ACCEL_CONFIG0 have them.
+  get fullScale() {
+    return [2000 / (1 << (this.bytes[0x4f] >> 5)), 16 / (1 << (this.bytes[0x50] >> 5))];
   }
 
   sample(at) {
@@ -236,6 +262,11 @@ export class Bmi088 extends Sensor {
 
   get isSampling() {
     return this.dies[0x69][0x10] === 0x82;
+  }
+
+  /// In °/s and g, as GYRO_RANGE and ACC_RANGE have them.
+  get fullScale() {
+    return [2000 / (1 << (this.dies[0x69][0x0f] & 7)), 3 << (this.dies[0x18][0x41] & 3)];
   }
 
   sample(at) {

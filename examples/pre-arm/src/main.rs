@@ -16,7 +16,7 @@ use flight_log::{Recorded, channel};
 use spikewire::temporal::{AdaptiveContrast, AdaptiveStepForward};
 use spikewire::{Conditions, ConfigError, Sample, Spike, Start, Survey};
 
-/// Four seconds at 197 Hz.
+/// About four seconds, at 198.5 samples a second.
 const WATCHED: usize = 788;
 
 /// At most one spike in fifty samples on the ground.

@@ -277,7 +277,7 @@ impl ChannelOptions {
 pub(crate) fn read_flight(path: &Path) -> Result<Flight> {
     let flight = Flight::read(path)?;
     for rounded in flight.rounded() {
-        eprintln!("{}: {rounded}", path.display());
+        say!("{}: {rounded}", path.display());
     }
     Ok(flight)
 }

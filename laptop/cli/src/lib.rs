@@ -1,6 +1,9 @@
 //! The command line of the program `spikewire`: parses arguments and prints text. The work itself is done by the
 //! library `lab`.
 
+#[macro_use]
+mod words;
+
 mod commands;
 mod inputs;
 mod live;
@@ -8,7 +11,6 @@ mod options;
 mod panel;
 mod report;
 mod stop;
-mod words;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use commands::{capture, convert, decode, encode, info, listen, score, signal};
@@ -30,6 +32,7 @@ enum Command {
     Encode(encode::Encode),
     Decode(decode::Decode),
     Info(info::Info),
+    Samples(commands::samples::Samples),
     Plot(commands::plot::Plot),
     Dataset(commands::dataset::Dataset),
     Emit(commands::emit::Emit),
@@ -56,6 +59,7 @@ A scheme for a log:
 
 Recordings:
   info     List the content of logs and tables
+  samples  Write channels of a log as a CSV table
   plot     Draw a signal, its spikes and what they decode to
   dataset  Encode many logs to Parquet files, with a manifest
 
@@ -106,6 +110,7 @@ pub fn run() -> ExitCode {
         Command::Plot(options) => commands::plot::run(&options),
         Command::Network(options) => commands::network::run(&options),
         Command::Info(options) => info::run(&options),
+        Command::Samples(options) => commands::samples::run(&options),
         Command::Signal(options) => signal::run(&options),
         Command::Advise(options) => commands::advise::run(&options),
         Command::Emit(options) => commands::emit::run(&options),
@@ -118,7 +123,7 @@ pub fn run() -> ExitCode {
         // A reader that closes the pipe early, such as `head`, is no error.
         Err(error) if words::is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {}", words::of(&error));
+            say!("error: {}", words::of(&error));
             ExitCode::from(FAILURE)
         }
     }

@@ -4,7 +4,7 @@
 use crate::stop::Stop;
 use anyhow::{Context, Result, bail};
 use lab::events::{Item, LinkTally, Stream, Values};
-use lab::flight::Flight;
+use lab::flight::{Flight, visible};
 use ratatui::backend::CrosstermBackend;
 use ratatui::layout::{Constraint, Layout};
 use ratatui::style::{Color, Style};
@@ -67,8 +67,8 @@ impl Panel {
     pub(crate) fn of_flight(flight: &Flight) -> Self {
         let mut panel = Self::new(flight.neurons());
         panel.channels.extend(flight.channels.iter().map(|own| Channel {
-            name: own.name.clone(),
-            unit: own.unit.clone(),
+            name: visible(&own.name),
+            unit: visible(&own.unit),
             ..Channel::default()
         }));
         panel

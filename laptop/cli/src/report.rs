@@ -71,7 +71,7 @@ impl<T> Log<T> {
         let words = words::of(&why);
         let is_named = words.strip_prefix(&log).is_some_and(|rest| rest.starts_with(':'));
         let of = if is_named { String::new() } else { format!("{log}: ") };
-        eprintln!("error: {of}{words}");
+        say!("error: {of}{words}");
         Ok(Self { log, refused: Some(words), notes: Vec::new(), content: None })
     }
 }

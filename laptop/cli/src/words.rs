@@ -4,8 +4,29 @@
 use anyhow::Error;
 use catalogue::run::Worded;
 use lab::ErrorKind;
+use lab::flight::visible;
 use lab::input::LogKind;
 use std::io;
+
+/// Prints a message on standard error, on one line. Letters of names that would control the terminal or turn the line
+/// around are escaped.
+macro_rules! say {
+    ($($message:tt)*) => {
+        eprintln!("{}", lab::flight::visible(&format!($($message)*)))
+    };
+}
+
+/// Returns the text of a page for people. Letters of names that would control the terminal or turn a line around are
+/// escaped.
+pub(crate) fn page(text: &str) -> String {
+    let mut page = String::new();
+    for line in text.split_inclusive('\n') {
+        let words = line.trim_end_matches('\n');
+        page += &visible(words);
+        page += &line[words.len()..];
+    }
+    page
+}
 
 /// Returns the command-line option of a setting: `--max-rmse` for `max_rmse`.
 pub(crate) fn option(name: &str) -> String {
@@ -80,15 +101,15 @@ pub(crate) fn tell_of(log: Option<&str>, notes: &[String]) {
     for note in notes {
         match log {
             // The note on the channels that were found begins with the log's name.
-            Some(log) if !note.starts_with(&format!("{log}: ")) => eprintln!("{log}: {note}"),
-            _ => eprintln!("{note}"),
+            Some(log) if !note.starts_with(&format!("{log}: ")) => say!("{log}: {note}"),
+            _ => say!("{note}"),
         }
     }
 }
 
 /// Prints notes of the library on standard error, one on each line.
 pub(crate) fn tell<'a, W: Worded + 'a>(notes: impl IntoIterator<Item = &'a W>) {
-    notes.into_iter().for_each(|note| eprintln!("{}", note.spelled(option)));
+    notes.into_iter().for_each(|note| say!("{}", note.spelled(option)));
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //!   that follow a `!`.
 //! - `command << input == text`: the command succeeds, and writes exactly this text.
 //!
-//! ` |> ` pipes the output of one command into the next. `\n`, `\r`, `\t` and `\\` are escapes. `NAME := text` defines
+//! ` |> ` pipes the output of one command into the next. `\n`, `\r`, `\t`, `\\` and `\u202e` are escapes. `NAME := text` defines
 //! a name for a text; `@NAME := text` writes the text to a file, and the name stands for the file's path; `{NAME}`
 //! inserts the text or the path.
 
@@ -60,6 +60,7 @@ fn plain(text: &str, names: &Names) -> String {
 
 fn unescaped(text: &str) -> String {
     let text = text.replace(r"\\", "\0").replace(r"\n", "\n").replace(r"\r", "\r");
+    let text = text.replace(r"\u202e", "\u{202e}");
     text.replace(r"\t", "\t").replace('\0', r"\")
 }
 

@@ -1,5 +1,6 @@
 //! Errors of reading a flight file, as values that a program can match.
 
+use crate::visible;
 use catalogue::run::SampleType;
 use std::path::Path;
 use std::{error, fmt, io};
@@ -159,12 +160,12 @@ impl fmt::Display for FlightErrorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(error) => write!(f, "cannot be opened: {error}"),
-            Self::Text(words) => write!(f, "cannot be read: {words}"),
+            Self::Text(words) => write!(f, "cannot be read: {}", visible(words)),
             Self::Version { given, known } => {
                 write!(f, "{given} is not known here, only {known}")
             }
             Self::Unknown { given, known } => {
-                write!(f, "`{given}` is unknown; there are {}", known.join(", "))
+                write!(f, "`{}` is unknown; there are {}", visible(given), known.join(", "))
             }
             Self::Range { given, min, max } => write!(f, "{given} must be in {min}..={max}"),
             Self::Missing => f.write_str("is missing"),
@@ -184,7 +185,7 @@ impl fmt::Display for FlightErrorKind {
                 "{given} is in µs, {min} to {max}; {given} ms are {}",
                 u64::from(*given) * 1000
             ),
-            Self::Unit { given, meant } => write!(f, "`{given}` is written `{meant}`"),
+            Self::Unit { given, meant } => write!(f, "`{}` is written `{meant}`", visible(given)),
             Self::NoUnit { name } => write!(
                 f,
                 "is missing for {name:?}: give `unit = \"rad/s\"` or \"deg/s\", \"m/s²\" or \"g\", or let the \

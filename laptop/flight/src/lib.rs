@@ -42,5 +42,5 @@ pub use flight::{Channel, Flight, Parts};
 pub use rounding::Rounded;
 pub use rust::rust;
 pub use script::build;
-pub use spelling::escaped;
+pub use spelling::{escaped, visible};
 pub use units::{Axis, STANDARD_GRAVITY, UnitSize, unit_of_name};

@@ -1,6 +1,6 @@
 //! Parameters that the sample type changes.
 
-use crate::{Flight, FlightError, FlightErrorKind};
+use crate::{Flight, FlightError, FlightErrorKind, visible};
 use catalogue::run::{Asked, SampleType};
 use std::fmt;
 
@@ -22,6 +22,7 @@ pub struct Rounded {
 impl fmt::Display for Rounded {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { channel, parameter, given, nearest, sample } = self;
+        let channel = visible(channel);
         write!(f, "{channel}: {parameter} {given} is {nearest} in {sample}")
     }
 }

@@ -1,5 +1,6 @@
 //! Flight files: they are read, written and read again without change, and a wrong one is refused with key and line.
 
+use catalogue::run::Value;
 use proptest::prelude::*;
 use spikewire_flight::{Filter, Flight, FlightErrorKind, UnitSize, rust};
 
@@ -332,6 +333,23 @@ fn a_rounded_parameter_is_told_or_refused() {
     for (sample, threshold) in [("f32", "0.1"), ("q8.8", "0.25"), ("i16", "3")] {
         assert!(Flight::parse(&text(sample, threshold)).unwrap().rounded().is_empty());
     }
+    // A tenth is no more than a tenth, and of two channels each has its own note.
+    for (threshold, is_refused) in [("1.11", false), ("1.12", true), ("9.1", false)] {
+        assert_eq!(Flight::parse(&text("i16", threshold)).is_err(), is_refused, "{threshold}");
+    }
+    let two = "[[channel]]\nname = \"b\"\nparameters = { threshold = 0.2 }\n";
+    let flight = Flight::parse(&format!("{}\n{two}", text("q8.8", "0.1"))).unwrap();
+    let module = rust(&flight).unwrap();
+    assert_eq!(module.matches("Rounded: a: threshold 0.1 is").count(), 1, "{module}");
+    assert_eq!(module.matches("Rounded: b: threshold 0.2 is").count(), 1, "{module}");
+    let asked = flight.asked_as_flown(1);
+    assert_eq!(asked.get("threshold").and_then(Value::number), Some(0.199_218_75));
+    assert!(asked.get("start").is_none());
+    // Of a list it is the number that changes most.
+    let taps = "version = 1\nscheme = \"hsa\"\nsample = \"q8.8\"\nperiod = 2000\n[[channel]]\nname = \"a\"\n\
+                parameters = { filter = [0.25, 0.3, 0.1, 0.5], shift = 0 }";
+    let [rounded] = &Flight::parse(taps).unwrap().rounded()[..] else { panic!("one list") };
+    assert_eq!((rounded.given, rounded.nearest), (0.1, 0.101_562_5));
     // A small end of a wide range is no large change.
     let range = "version = 1\nscheme = \"position\"\nsample = \"i16\"\nperiod = 2000\n[[channel]]\nname = \"a\"\n\
                  parameters = { neurons = 4, min = 0.4, max = 100 }";
@@ -401,11 +419,70 @@ fn a_unit_is_that_of_the_file_or_of_a_name() {
     let flight = Flight::parse(&text).unwrap();
     let units: Vec<&str> = flight.channels.iter().map(|channel| channel.unit.as_str()).collect();
     assert_eq!(units, ["deg/s", "rad/s", "rad/s"]);
+    let both = format!(
+        "{HEAD}[parameters]\nthreshold = 1\n[[channel]]\nname = \"x_dps\"\nsource = \"x_rad_s\"\n"
+    );
+    assert_eq!(Flight::parse(&both).unwrap().channels[0].unit, "deg/s", "the name goes first");
     flight.check_units().unwrap();
     let error = Flight::parse(&format!("{text}[[channel]]\nname = \"gyro_x\"")).unwrap();
     let error = error.check_units().unwrap_err();
     assert_eq!((error.place.channel, error.place.line), (Some(3), Some(14)));
     assert!(error.to_string().contains("give `unit = \"rad/s\"`"), "{error}");
+}
+
+/// Every key of a file is one of the file that is written of it.
+#[test]
+fn every_key_is_written() {
+    for filter in [
+        "{ centre = 80.0, kind = \"notch\", q = 2.5 }",
+        "{ corner = 20.0, kind = \"first-order\" }",
+        "{ corner = 20.0, kind = \"low-pass\" }",
+    ] {
+        for full_every in [0, 1, 600_000] {
+            let text = format!(
+                "version = 1\nscheme = \"sod\"\nsample = \"q8.8\"\nperiod = 2000 # µs\nkeyframe_every = 7 # samples\n\
+                 clock_ppm = 300\nstep_bits = 1\ngathering = 1 # µs\nfull_every = {full_every} # µs\nfilter = {filter}\n\
+                 parameters = {{ spikes = 4 }}\n\n[[channel]]\nname = \"roll\"\nsource = \"imu.x\"\nunit = \"rad/s\"\n\
+                 counts = 0.5\nparameters = {{ start = -1, threshold = 0.25 }}\n"
+            );
+            assert_eq!(Flight::parse(&text).unwrap().to_toml(&[]), text);
+        }
+    }
+}
+
+/// A channel without a start begins as its scheme does, beside one that has one.
+#[test]
+fn channels_may_start_differently() {
+    let text = format!(
+        "{HEAD}{CHANNEL}[[channel]]\nname = \"pitch\"\nparameters = {{ threshold = 0.1, start = 2 }}\n"
+    );
+    let module = rust(&Flight::parse(&text).unwrap()).unwrap();
+    let states = "[(&SCHEME_0, <Code as spikewire::Start>::START), \
+                  (&SCHEME_0, <spikewire::temporal::StepForward<f32>>::state_at(2.0))]";
+    assert!(module.contains(states), "{module}");
+}
+
+/// Sub-timesteps must be told apart by the fastest clock: five fit into a period at 10 %, eight at 2 %.
+#[test]
+fn sub_timesteps_fit_by_the_tolerance_of_the_file() {
+    for (ppm, slots, most) in [(20_000, 8, None), (100_000, 5, None), (100_000, 8, Some("1..=5"))] {
+        let text = format!(
+            "version = 1\nscheme = \"grf-slots\"\nperiod = 1000\nclock_ppm = {ppm}\n[parameters]\nneurons = 5\n\
+             slots = {slots}\nmin = 0\nmax = 1\n[[channel]]\nname = \"a\"\n"
+        );
+        let error = Flight::parse(&text).err();
+        assert_eq!(error.as_ref().map(|error| error.place.line), most.map(|_| Some(7)));
+        let words = error.map(|error| error.to_string()).unwrap_or_default();
+        assert!(words.contains(most.unwrap_or_default()), "{ppm} {slots}: {words}");
+    }
+    // Their length leaves room for 2 %, whatever the tolerance is: a part of the fingerprint does not depend on it.
+    for ppm in [0, 300, 20_000] {
+        let text = format!(
+            "version = 1\nscheme = \"grf-slots\"\nperiod = 1000\nclock_ppm = {ppm}\n[parameters]\nneurons = 5\n\
+             slots = 50\nmin = 0\nmax = 1\n[[channel]]\nname = \"a\"\n"
+        );
+        assert_eq!(Flight::parse(&text).unwrap().slot_ticks(), 19, "{ppm}");
+    }
 }
 
 /// Codes without steps have no step numbers, and codes without a baseline no start.

@@ -1,10 +1,12 @@
 //! Each key of a flight file means what the table of keys says, and the fingerprint is that of the same flight by hand.
 
+use catalogue::run::SampleType;
 use proptest::prelude::*;
 use spikewire::filter::{Biquad, Filtered, FirstOrder};
+use spikewire::link::{Coding, Session, Transmitter};
 use spikewire::temporal::StepForward;
 use spikewire::{Bank, Fingerprint, Sample, Start};
-use spikewire_flight::{Flight, FlightErrorKind};
+use spikewire_flight::{Filter, Flight, FlightErrorKind};
 
 /// Returns a flight of one channel, with further lines before it.
 fn flight(period: u32, lines: &str) -> String {
@@ -50,6 +52,69 @@ fn a_channel_s_parameter_goes_before_the_shared_one() {
     assert_eq!(spikes.collect::<Vec<_>>(), [4, 4]);
     let asked = flight.asked(&flight.channels[0]);
     assert_eq!(asked.get("threshold"), flight.channels[0].asked.get("threshold"));
+    let all = flight.asked_of_all();
+    assert_eq!(all.get("threshold").and_then(|list| list.numbers()), Some(&[2.0, 5.0][..]));
+    assert_eq!(all.get("spikes"), asked.get("spikes"));
+}
+
+/// Channels of random codes draw numbers of their own.
+#[test]
+fn no_two_channels_draw_the_same_numbers() {
+    let text = "version = 1\nscheme = \"bernoulli\"\nperiod = 2000\nparameters = { min = 0, max = 1 }\n\
+        [[channel]]\nname = \"a\"\n[[channel]]\nname = \"b\"\n";
+    let flight = Flight::parse(text).unwrap();
+    let [one, other] = [0, 1].map(|channel: usize| {
+        let mut codec = flight.run_time().codec(&flight.settings()[channel]).unwrap();
+        let mut events = Vec::new();
+        codec.encode(&[0.5; 64], &mut events);
+        codec.finish(&mut events);
+        events.iter().map(|event| event.sample).collect::<Vec<_>>()
+    });
+    assert!(one.len() > 10 && one != other, "{one:?}");
+}
+
+/// A transmitter has all that a file says of its frames.
+#[test]
+fn a_transmitter_is_that_of_the_file() {
+    for (lines, gathering, full_every) in
+        [("", 0, Transmitter::FULL_EVERY), ("gathering = 5000\nfull_every = 0", 5_000, 0)]
+    {
+        let flight = Flight::parse(&flight(1500, lines)).unwrap();
+        let by_hand = Transmitter::new(Coding::for_channels(1, 1500), Session::counted(3))
+            .with_addresses(0..=0)
+            .with_fingerprint(flight.fingerprint())
+            .with_gathering(gathering)
+            .with_full_every(full_every);
+        let transmitter = flight.transmitter(Session::counted(3));
+        assert_eq!(format!("{transmitter:?}"), format!("{by_hand:?}"));
+    }
+}
+
+/// A filter that runs on the laptop has the delay of a firmware's, and leaves out samples that are not finite.
+#[test]
+fn a_filter_has_its_delay_and_passes_over_what_is_not_finite() {
+    use spikewire::filter::Filter as _;
+    let delays = [
+        FirstOrder::<f32>::low_pass(40.0, 500.0).delay(),
+        Biquad::<f32>::low_pass(40.0, 500.0).delay(),
+        Biquad::<f32>::notch(40.0, 500.0, 2.0).delay(),
+    ];
+    let filters = [
+        Filter::FirstOrder { corner: 40.0 },
+        Filter::LowPass { corner: 40.0 },
+        Filter::Notch { centre: 40.0, q: 2.0 },
+    ];
+    for (filter, delay) in filters.into_iter().zip(delays) {
+        assert_eq!(filter.delay(500.0).unwrap().to_bits(), delay.to_bits());
+        for sample in ["f32", "i16", "q8.8"] {
+            let sample: SampleType = sample.parse().unwrap();
+            let [mut whole, mut broken] = [(); 2].map(|()| filter.start(sample, 500.0).unwrap());
+            for value in [100.0, -20.0, 50.0] {
+                assert!(broken(f64::NAN).is_nan() && broken(f64::INFINITY).is_infinite());
+                assert_eq!(whole(value).to_bits(), broken(value).to_bits(), "{sample}");
+            }
+        }
+    }
 }
 
 /// Returns the fingerprint of the flight of one channel behind a filter, as its sender computes it.

@@ -12,10 +12,10 @@ use crate::unit::unit_of_name;
 use crate::values;
 use catalogue::run::{Asked, Given, SampleType, Words};
 use spikewire::link::{self, Received, Transmitter, Withheld};
-use spikewire_flight::FlightError;
+use spikewire_flight::{FlightError, UnitSize};
 use std::num::NonZeroU32;
 
-pub use spikewire_flight::{Channel, Filter, Filtering, Flight, Parts, rust};
+pub use spikewire_flight::{Channel, Filter, Filtering, Flight, Parts, rust, visible};
 
 impl From<FlightError> for crate::Error {
     fn from(error: FlightError) -> Self {
@@ -158,6 +158,19 @@ pub fn input(flight: &Flight, options: &InputOptions) -> Result<InputOptions> {
         own.channel.columns = sources;
     }
     Ok(own)
+}
+
+/// Returns the size of each channel's unit, in rad/s or m/s²; 1 for a unit of another quantity.
+///
+/// # Errors
+/// Returns an error for the first channel without a unit.
+pub fn unit_sizes(flight: &Flight) -> Result<Vec<f64>> {
+    flight.check_units()?;
+    let size = |channel: &Channel| match UnitSize::of(&channel.unit) {
+        Some(UnitSize::Rate(size) | UnitSize::Acceleration(size)) => size,
+        None => 1.0,
+    };
+    Ok(flight.channels.iter().map(size).collect())
 }
 
 /// A source of samples. It converts the samples to the sensor's counts, and then filters them, as the flight's sender

@@ -109,6 +109,7 @@ function listenToFiles() {
     plots.rebuild();
     update();
   });
+  axes.onUnit = () => update();
   axes.onChoice = (field) => loadChannel({ field });
   addEventListener("dragover", (event) => { event.preventDefault(); document.body.classList.add("over"); });
   addEventListener("dragleave", (event) => { if (!event.relatedTarget) document.body.classList.remove("over"); });
@@ -145,7 +146,7 @@ async function begin() {
   listenToSearch();
   listenToLive();
   try {
-    ({ schemes: state.schemes } = await state.library.ask({ ask: "catalogue" }));
+    ({ schemes: state.schemes, units: state.units } = await state.library.ask({ ask: "catalogue" }));
     addEventListener("hashchange", ({ newURL }) => follow(new URL(newURL).hash));
     await follow(location.hash);
   } catch (error) {

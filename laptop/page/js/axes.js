@@ -1,5 +1,5 @@
-// The axes of the sensor, each with its spikes by the settings that are open: one thread reads and codes them all, so that the
-// log is in memory once more, and not once for each axis.
+// The axes of the sensor, each with its spikes by the settings that are open: one thread reads and codes them all, that of the
+// recording itself if the log is large, so that a large log is in memory once.
 
 import { css, element, fine, fixed } from "./dom.js";
 import { groupOf, siblings } from "./channels.js";
@@ -7,10 +7,12 @@ import { Library } from "./library.js";
 import { lowerBound, Pyramid } from "./pyramid.js";
 import { choiceOf, loadRequest, openRequest, state } from "./state.js";
 import { Times } from "./times.js";
-import { answer as answeredUnit, toldUnit } from "./units.js";
+import { noteUnit, unitOf } from "./units.js";
 
 /** Longer recordings show one channel alone: each axis takes 24 bytes a sample. */
 const MOST_SAMPLES = 3_000_000;
+/** Bytes of a log from which on the thread of the recording has the axes as well. */
+const LARGE = 24e6;
 const HEIGHT = 34, RASTER = 8;
 
 /** How axes are read: another rate is another recording. */
@@ -31,7 +33,7 @@ export class Axes {
   forget() {
     const { recording } = state;
     if (this.#of && this.#of.opened === recording?.opened && this.#of.key === keyOf(recording.asked)) return;
-    this.#library?.stop();
+    if (!this.#of?.isShared) this.#library?.stop();
     this.#library = this.#of = undefined;
     this.#all = [];
     this.host.textContent = "";
@@ -41,21 +43,26 @@ export class Axes {
   show(setting) {
     const { recording } = state, { opened, topic, field: shown, asked } = recording;
     this.#setting = structuredClone(setting);
+    if (recording.isBeginning) return;
     if (!this.#of) {
       const fields = recording.samples > MOST_SAMPLES ? [] : siblings(opened.topics, topic);
-      this.#of = { opened, key: keyOf(asked), asked };
-      this.#all = (fields.length < 2 ? [] : fields).map((field, place) => ({ field, place }));
-      if (this.#all.length) this.#library = new Library();
+      const isShared = opened.files.some(({ size }) => size > LARGE);
+      this.#of = { opened, key: keyOf(asked), asked, isShared, isOpen: isShared };
+      // The recording itself has place 0 in its library.
+      this.#all = (fields.length < 2 ? [] : fields).map((field, place) => ({ field, place: place + 1 }));
+      if (this.#all.length) this.#library = isShared ? recording.library : new Library();
     }
     this.#strips(recording);
     for (const { field, button } of this.#all) button.setAttribute("aria-pressed", field === shown);
+    // In a shared thread what is looked at goes first.
+    if (this.#of.isShared && !recording.runs[state.current]) return;
     this.#running ??= this.#runAll().finally(() => (this.#running = undefined));
   }
 
   /** The strips below the names of their sensors, anew if what is known of these changed. */
   #strips(recording) {
     const titles = this.#all.map(({ field }) => {
-      const unit = toldUnit(recording, field) ?? answeredUnit(recording, field);
+      const unit = unitOf(recording, field);
       const rate = recording.uneven || !recording.rate ? "" : ` · ${fine(recording.rate)} Hz`;
       return `${groupOf(recording, field) > 0 ? "Acceleration" : "Turn rate"}${unit ? `, ${unit}` : ""}${rate}`;
     });
@@ -91,6 +98,7 @@ export class Axes {
         axis.recording = await library.ask(loadRequest(opened, { ...channel, field: axis.field }, axis.place));
         axis.times = new Times(axis.recording.samples, axis.recording.rate, axis.recording.arrays.times);
         axis.signal = new Pyramid(axis.recording.arrays.values);
+        if (noteUnit(opened, channel.topic, axis.field, axis.recording.unit)) this.onUnit();
       }
       const choice = choiceOf(setting, axis.field), key = JSON.stringify(choice);
       if (axis.key === key) return;
@@ -170,7 +178,7 @@ export class Axes {
     const isFlat = ({ signal, recording }) => signal && new Set(signal.range(0, recording.samples)).size === 1;
     const good = this.#all.filter((axis) => axis.answer && !isFlat(axis)), bad = this.#all.filter((axis) => !good.includes(axis));
     return {
-      channels: good.map(({ recording: { name }, answer: { asked } }) => ({ name, parameters: asked })),
+      channels: good.map(({ field, recording: { name }, answer: { asked } }) => ({ field, name, parameters: asked })),
       left: bad.map((axis) => `${axis.field} ${isFlat(axis) ? "is flat" : `(${axis.error?.message ?? "not read"})`}: left out`),
     };
   }

@@ -1,7 +1,7 @@
 // The charts below each other on one time axis, which the last one shows: signal, errors, and spikes of each setting.
 
 import uPlot from "uplot";
-import { css } from "./dom.js";
+import { css, fine } from "./dom.js";
 import { paintColumns, paintGaps, paintMark, paintSpikes } from "./painting.js";
 
 /** Width of the numbers and of the label at the left, and height of the time axis. */
@@ -35,8 +35,8 @@ function around(low, high) {
   return [-far, far];
 }
 
-/** The numbers of an axis, or none on a low strip. */
-const numbers = (height) => (height < LOW ? { values: (_, all) => all.map(() => "") } : {});
+/** The numbers of an axis, or none while the strip is low; `below` is the height of the time axis under it. */
+const numbers = (below = 0) => ({ values: (plot, all) => all.map((own) => (plot.height - below < LOW ? "" : fine(own))) });
 
 const axis = (label, more) => ({
   stroke: css("--ink"), grid: { stroke: css("--grid"), width: 1 }, ticks: { stroke: css("--grid") }, font: FONT, labelFont: FONT, label, labelSize: LABEL, ...more,
@@ -67,7 +67,7 @@ export function charts(plots) {
   }, signal, host);
   const strip = new uPlot({
     ...common, height: tall.errors, scales: { x, y: { range: (_, low, high) => around(low, high) } },
-    axes: [hidden, axis(tall.errors < LOW ? "" : "error", { size: NUMBERS, space: 20, ...numbers(tall.errors) })],
+    axes: [hidden, axis(tall.errors < LOW ? "" : "error", { size: NUMBERS, space: 20, ...numbers() })],
     series: [{}, ...runs.map(({ colour }) => stroke(colour))],
     hooks: hooks(columns),
   }, errors, host);
@@ -78,7 +78,7 @@ export function charts(plots) {
     return new uPlot({
       ...common, height: tall.spikes[place] + (isLast ? TIMES : 0), scales: { x, y: { range: () => rows } },
       axes: [isLast ? axis(`time, ${times.unit}`, { size: 20, gap: 1, ticks: { stroke: css("--grid"), size: 4 } }) : hidden,
-        axis(label, { size: NUMBERS, ...numbers(tall.spikes[place]), grid: { show: false }, splits: isPopulation ? undefined : () => (own.isSigned ? [-1, 0, 1] : [0, 1]) })],
+        axis(label, { size: NUMBERS, ...numbers(isLast ? TIMES : 0), grid: { show: false }, splits: isPopulation ? undefined : () => (own.isSigned ? [-1, 0, 1] : [0, 1]) })],
       series: [{}, { paths: () => null, points: { show: false } }],
       hooks: hooks((plot) => paintSpikes(plot, plots.runs[place], plots)),
     }, [plots.view, [0, 0]], host);

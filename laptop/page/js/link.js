@@ -1,5 +1,8 @@
 // All settings in a link, and back.
 
+/** Parts of a setting that a link holds as one. */
+const OF_BANK = ["filter", "keyframe_ms", "forces", "isFlown", "link", "entries"];
+
 /** The part of a link behind `#`; of a file of one's own it holds the name, and no sample. */
 export function write({ example, file, channel, settings }) {
   const link = new URLSearchParams();
@@ -7,10 +10,11 @@ export function write({ example, file, channel, settings }) {
   else if (file) link.set("file", file);
   for (const name of ["topic", "field", "rate"]) if (channel?.[name]) link.set(name, channel[name]);
   if (channel?.skip) link.set("skip", "1");
-  settings.forEach(({ scheme, sample, parameters, own = {}, forces, isFlown, filter, keyframe_ms: keyframes }, place) => {
+  settings.forEach(({ scheme, sample, parameters, own = {}, ...bank }, place) => {
     link.append("s", new URLSearchParams({ "": `${scheme} ${sample}`, ...parameters }));
     for (const [field, given] of Object.entries(own)) link.append("own", new URLSearchParams({ "": `${place} ${field}`, ...given }));
-    if (filter || keyframes || forces || isFlown) link.append("bank", `${place} ${JSON.stringify({ filter, keyframe_ms: keyframes, forces, isFlown })}`);
+    const given = OF_BANK.filter((name) => bank[name]).map((name) => [name, bank[name]]);
+    if (given.length) link.append("bank", `${place} ${JSON.stringify(Object.fromEntries(given))}`);
   });
   return link.toString();
 }
@@ -28,8 +32,8 @@ export function read(hash) {
     if (settings[place]) settings[place].own = { ...settings[place].own, [field]: given };
   }
   for (const text of link.getAll("bank")) {
-    const { filter, keyframe_ms: keyframes, forces, isFlown } = JSON.parse(text.slice(2));
-    if (settings[text[0]]) Object.assign(settings[text[0]], { filter, keyframe_ms: keyframes, forces, isFlown });
+    const given = JSON.parse(text.slice(2));
+    for (const name of settings[text[0]] ? OF_BANK : []) settings[text[0]][name] = given[name];
   }
   const channel = Object.fromEntries(["topic", "field", "rate"].map((name) => [name, link.get(name) ?? undefined]));
   return { example: link.get("example") ?? undefined, file: link.get("file") ?? undefined, channel: { ...channel, skip: link.has("skip") }, settings };

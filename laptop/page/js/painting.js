@@ -25,14 +25,16 @@ export function paintColumns(plot) {
   ctx.restore();
 }
 
-/** A line at the sample that is marked. */
-export function paintMark(plot, { mark, times }) {
-  if (mark === undefined) return;
+/** A line at the sample that is marked, and one at the cursor if the keyboard moves it. */
+export function paintMark(plot, { mark, pointed, isStepped, times }) {
   const { ctx, bbox: { left, width, top, height } } = plot;
-  const x = Math.round(plot.valToPos(times.at(mark), "x", true));
-  if (x < left || x > left + width) return;
-  ctx.fillStyle = css("--ink");
-  ctx.fillRect(x, top, Math.max(1, Math.round(devicePixelRatio)), height);
+  for (const [sample, colour] of [[mark, "--ink"], [isStepped ? pointed : undefined, "--quiet"]]) {
+    if (sample === undefined) continue;
+    const x = Math.round(plot.valToPos(times.at(sample), "x", true));
+    if (x < left || x > left + width) continue;
+    ctx.fillStyle = css(colour);
+    ctx.fillRect(x, top, Math.max(1, Math.round(devicePixelRatio)), height);
+  }
 }
 
 /** The gaps of the recording, as bars over the whole height. */

@@ -10,7 +10,7 @@ import { Times } from "./times.js";
 const NOTHING = { at: () => null, range: () => [null, null] };
 
 export class Plots {
-  /** `onRange` is called with the samples in view, `onCursor` with the one under the pointer and the one with the mark, `onSignal` when the signal was drawn. */
+  /** `onRange` is called with the samples in view, `onCursor` when the cursor or the mark moved, `onSignal` when the signal was drawn. */
   constructor(host, { onRange, onCursor, onSignal }) {
     Object.assign(this, { host, onRange, onCursor, onSignal });
     this.runs = [];
@@ -63,22 +63,44 @@ export class Plots {
     this.size = `${this.width()} ${this.height()}`;
     for (const own of this.all) listen(own, this);
     this.onSignal();
+    this.onCursor();
     this.onRange(this.samples());
   }
 
   /** Remembers the sample under the pointer, of the plot that it is over. */
   point(plot) {
-    if (plot.cursor.event === undefined) return;
-    const { left } = plot.cursor;
+    const { event, left } = plot.cursor;
+    // A pointer that rests has no say after the keyboard moved the cursor.
+    if (event === undefined || (this.isStepped && event === this.restsAt)) return;
     const sample = left >= 0 ? this.times.first(plot.posToVal(left, "x") - this.times.step / 2) : undefined;
+    this.restsAt = event;
+    this.isStepped = false;
     this.pointed = sample < this.times.count ? sample : undefined;
-    this.onCursor(this.pointed, this.mark);
+    this.onCursor();
   }
 
-  /** Sets the mark on the sample under the pointer, or takes it away from there. */
+  /** Moves the cursor without a pointer, by so many columns of pixels or, where these are farther apart, samples. */
+  step(by) {
+    const [start, end] = this.samples(), stride = Math.max(1, Math.floor((end - start) / this.columns()));
+    this.pointed = Math.max(0, Math.min(this.times.count - 1, this.pointed === undefined ? (start + end) >> 1 : this.pointed + by * stride));
+    this.isStepped = true;
+    const time = this.times.at(this.pointed), half = (this.view[1] - this.view[0]) / 2;
+    if (time < this.view[0] || time > this.view[1]) this.show(time - half, time + half);
+    else this.draw();
+    this.onCursor();
+  }
+
+  /** Sets the mark on the sample under the cursor, or takes it away from there. */
   setMark() {
     this.mark = this.pointed === this.mark ? undefined : this.pointed;
-    this.onCursor(this.pointed, this.mark);
+    this.onCursor();
+    this.draw();
+  }
+
+  /** Takes mark and cursor away. */
+  clearCursor() {
+    this.mark = this.pointed = undefined;
+    this.onCursor();
     this.draw();
   }
 

@@ -19,10 +19,12 @@ function rateWords({ rate, uneven }) {
   return uneven ? ` ${brief(uneven.throughLength)} a second through the length, but ${brief(uneven.byMedian)} by the median step: say the samples a second` : ` ${brief(rate)} a second`;
 }
 
-function about({ reading, recording, opened, asked }) {
+function about({ reading, recording, asked }) {
   if (reading) {
-    const { done, total } = reading, name = opened?.file ?? asked?.files[0]?.name ?? "";
-    return total > 1 ? `reading ${name} … ${Math.round((100 * done) / total)} % of ${(total / 1e6).toFixed(0)} MB` : `reading ${name} …`;
+    // A log is read twice: for what it holds, and for the channel.
+    const { done, total } = reading, file = asked?.files[0]?.name ?? "", name = reading.field ? `${reading.field} of ${file}` : file;
+    const shown = recording?.isBeginning ? ", of which the beginning is shown" : "";
+    return total > 1 ? `reading ${name} … ${Math.round((100 * done) / total)} % of ${(total / 1e6).toFixed(0)} MB${shown}` : `reading ${name} …${shown}`;
   }
   if (!recording) return "";
   const { name, samples, seconds, min, max, unit, gaps, opened: { file } } = recording;
@@ -44,7 +46,7 @@ function showFound(topics, find) {
   const all = topics.flatMap(({ name, fields, units }) => fields.map((field, place) => ({ topic: name, field, unit: units[place] })));
   const words = ({ topic, field }) => [topic, field].filter(Boolean).join(" · ");
   const good = all.filter((channel) => words(channel).toLowerCase().includes(part)).slice(0, MOST_FOUND);
-  render(good.length ? good.map((channel) => html`<li><button type="button" title=${words(channel)} @click=${() => find(channel)}>${words(channel)}${channel.unit ? `, ${channel.unit}` : ""}</button></li>`)
+  render(good.length ? good.map((channel) => html`<li><button type="button" title=${words(channel)} @click=${() => find(channel)}>${words(channel)}${channel.unit ? `, ${channel.unit.name}` : ""}</button></li>`)
     : html`<li class="quiet">no channel has “${part}” in its name</li>`, at("found"));
 }
 

@@ -88,6 +88,13 @@ function coded() {
   });
 }
 
+/** What a flight's file says of its link, which the page passes on. */
+function linkNotes({ link }) {
+  if (!link) return [];
+  const { step_bits: bits, gathering, full_every: full, clock_ppm: clock } = link;
+  return [`The flight file's link goes with these settings: step_bits ${bits}, gathering ${gathering} µs, full_every ${full} µs, clock_ppm ${clock}.`];
+}
+
 /** Why a channel that never changes is not coded. */
 const flatness = ({ name, min }) => new Error(`${name} is ${min} in all its samples, which leaves nothing to code: choose another channel.`);
 
@@ -121,7 +128,7 @@ export function showSettings() {
   showBank(setting);
   fail("error", error && recording.min === recording.max ? flatness(recording) : error);
   const { basis } = setting, scaled = basis ? [`Found on ${basis}; ranges, and thresholds of another quantity, are scaled to each axis's own signal: look at each.`] : [];
-  render([...scaled, ...(answer?.notes ?? [])].map((words) => html`<li>${words}</li>`), at("notes"));
+  render([...scaled, ...linkNotes(setting), ...(answer?.notes ?? [])].map((words) => html`<li>${words}</li>`), at("notes"));
   showVerdict(setting);
   const good = coded();
   render([entry("signal", "--signal"), ...good.map(({ name, variable, isPart }) => entry(`${name}, decoded${isPart ? " in part" : ""}`, variable))], at("legend"));

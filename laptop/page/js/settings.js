@@ -74,12 +74,12 @@ export function replace(setting) {
   return update();
 }
 
-/** Filter and keyframes of a setting that another scheme takes over: those of a bank that flew are that bank's alone. */
-const sharedBy = ({ isFlown, filter, keyframe_ms: keyframes }) => (isFlown ? {} : { filter, keyframes });
+/** The parts of a setting around its code, which another scheme takes over: those of a bank that flew are that bank's alone. */
+const sharedBy = ({ isFlown, filter, keyframe_ms, link, entries }) => (isFlown ? {} : { filter, keyframe_ms, link, entries });
 
 /** Takes a scheme with the parameters that a search found on the channel that is open behind this filter, for all axes, or with none. */
 export function take(scheme, given, filter = sharedBy(current()).filter) {
-  const { sample } = current(), { keyframes } = sharedBy(current()), setting = { scheme, sample, parameters: {}, filter, keyframe_ms: keyframes };
+  const setting = { scheme, sample: current().sample, parameters: {}, ...sharedBy(current()), filter };
   return replace(given ? fitted(setting, given, axes.ranges) : setting);
 }
 
@@ -87,11 +87,12 @@ export function take(scheme, given, filter = sharedBy(current()).filter) {
 export const takeFlight = (file) => whileBusy(async () => {
   state.fileError = undefined;
   try {
-    const { channels, scheme, sample, filter, keyframeMs } = await state.library.ask({ ask: "read-flight", text: await file.text() });
+    const { channels, scheme, sample, filter, keyframeMs, link: ofLink } = await state.library.ask({ ask: "read-flight", text: await file.text() });
     // The program names a log's channels with their topic.
     const { topic } = state.channel, field = (source) => (topic && source.startsWith(`${topic}.`) ? source.slice(topic.length + 1) : source);
-    const own = Object.fromEntries(channels.map(({ source, parameters }) => [field(source), parameters]));
-    await replace({ scheme, sample, parameters: channels[0].parameters, own, filter, keyframe_ms: keyframeMs });
+    const own = Object.fromEntries(channels.map(({ entry, parameters }) => [field(entry.source), parameters]));
+    const entries = Object.fromEntries(channels.map(({ entry }) => [field(entry.source), entry]));
+    await replace({ scheme, sample, parameters: channels[0].parameters, own, filter, keyframe_ms: keyframeMs, link: ofLink, entries });
   } catch (error) {
     state.fileError = Object.assign(error, { message: `${file.name}: ${error.message}` });
     changed();
@@ -124,14 +125,19 @@ function step(by) {
   follow();
 }
 
+const VIEWS = { in: () => plots.zoom(0.5), out: () => plots.zoom(2), left: () => plots.pan(-0.25), right: () => plots.pan(0.25), all: () => plots.show(...plots.full) };
+/** Keys of the picture; an equals sign is a plus without shift. */
+const VIEW_KEYS = { "+": VIEWS.in, "=": VIEWS.in, "-": VIEWS.out, ArrowLeft: VIEWS.left, ArrowRight: VIEWS.right, 0: VIEWS.all, Enter: () => plots.setMark(), Escape: () => plots.clearCursor() };
+/** Keys with shift, which a plus needs on many keyboards. */
+const CURSOR_KEYS = { "+": VIEWS.in, ArrowLeft: () => plots.step(-1), ArrowRight: () => plots.step(1) };
+
 function listenToView() {
-  const views = { in: () => plots.zoom(0.5), out: () => plots.zoom(2), left: () => plots.pan(-0.25), right: () => plots.pan(0.25), all: () => plots.show(...plots.full) };
-  for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", views[button.dataset.view]);
+  for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", VIEWS[button.dataset.view]);
   at("plots").addEventListener("keydown", (event) => {
-    const view = { "+": "in", "=": "in", "-": "out", ArrowLeft: "left", ArrowRight: "right", 0: "all" }[event.key];
-    if (!view) return;
+    const act = (event.shiftKey ? CURSOR_KEYS : VIEW_KEYS)[event.key];
+    if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
-    views[view]();
+    act();
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     if (!state.recording) return;

@@ -5,15 +5,16 @@ import { Library } from "./library.js";
 
 /**
  * The setting that the page opens with: the bank that flew, where the unit is known. Its parameters are those of all channels but accelerations, which have `forces`:
- * they are of another unit and size. Channels that differ have their parameters in `own`, by name.
+ * they are of another unit and size. Channels that differ have their parameters in `own`, by name. A setting that a flight's
+ * file brought has that file's `link`, and its `entries` of the channels, by name.
  */
 export const FIRST = { scheme: "sod", sample: "f32", parameters: {}, isFlown: true };
 
 export const state = {
   /** The library with the file that was opened last; a recording keeps the one that read it. */
   library: new Library(),
-  /** The catalogue's schemes. */
-  schemes: [],
+  /** The catalogue's schemes, and the units of a gyroscope and of an accelerometer. */
+  schemes: [], units: [[], []],
   /** The file that was opened last: { file, example, topics, files, notes }; files that came together, of which one is open. */
   opened: undefined,
   dropped: [],
@@ -25,7 +26,7 @@ export const state = {
   table: {},
   /** Whether the whole messages of a damaged log are taken, and whether that log is damaged. */
   acceptsCut: false, isDamaged: false,
-  /** How far reading is, and why it failed. */
+  /** How far reading is, { done, total, field }, and why it failed. */
   reading: undefined, fileError: undefined,
   /** What a link names that is not here: { file, channel, settings }. */
   awaited: undefined,
@@ -73,7 +74,7 @@ export const settingsKey = () => JSON.stringify([state.settings, state.current])
 /** A setting on a channel, as the library takes it. */
 export const choiceOf = (setting, field) => ({
   scheme: setting.scheme, sample: setting.sample, parameters: parametersOf(setting, field),
-  filter: setting.filter ?? null, keyframe_ms: setting.keyframe_ms ?? null,
+  filter: setting.filter ?? null, keyframe_ms: setting.keyframe_ms ?? null, link: setting.link ?? null,
 });
 
 /** What the user says about a table, as the library takes it. */

@@ -28,9 +28,10 @@ const inC = (toml) => `/* Save as roll.toml:\n\n${toml}\n   then
 /** The settings of all axes that are drawn, or of the one channel, in one file for both ends, which says what is left out. */
 async function flight() {
   const { recording } = state, own = choice(), { key, answer } = outcome();
-  const shown = { name: recording.name, parameters: key === JSON.stringify(own) && answer ? answer.asked : own.parameters };
-  const { channels, left } = await axes.outcome();
-  const { text } = await recording.library.ask({ ask: "flight", choice: own, rate: recording.rate, channels: channels.length ? channels : [shown] });
+  const shown = { field: recording.field, name: recording.name, parameters: key === JSON.stringify(own) && answer ? answer.asked : own.parameters };
+  const { channels, left } = await axes.outcome(), { entries = {} } = current();
+  const named = (channels.length ? channels : [shown]).map(({ field, ...channel }) => ({ ...channel, entry: entries[field] ?? null }));
+  const { text } = await recording.library.ask({ ask: "flight", choice: own, rate: recording.rate, channels: named });
   return { words: left.map((words) => `# ${words}\n`).join("") + text, left: left.join("; ") };
 }
 

@@ -37,14 +37,16 @@ function here({ spikes, snr, rmse }, { threshold }) {
 }
 
 /** How the parameters of an axis differ from those that flew, in words. */
-function differences(scheme, field, given) {
+function differences(setting, field, given) {
+  const scheme = schemeOf(setting);
   const group = flownOn(scheme, field);
   if (!group) return [`a known unit of ${field}`];
   const words = ([name, value]) => {
     const own = given[name], isCoarser = name === "threshold" && Number(own) > value;
     return `${name} ${typeof value === "number" ? fine(value) : value}${isCoarser ? ` where this is coarser` : ""}${field === state.recording.field ? "" : ` on ${field}`}`;
   };
-  return Object.entries(group).filter(([name, value]) => !isSame(given[name], value)).map(words);
+  const more = Object.keys(parametersOf(setting, field)).filter((name) => !(name in group));
+  return [...Object.entries(group).filter(([name, value]) => !isSame(given[name], value)).map(words), ...more.map((name) => `no ${name} on ${field}`)];
 }
 
 /** The verdict on a setting with what came of it: the words of the chip, its tone, and the reason. */
@@ -57,11 +59,13 @@ export function verdict(setting, { settings, figures }) {
   if (!group) return { chip: "Unit unknown", reason: `${name} flew in rad/s and m/s²; the unit of this channel is not known: choose it below the axes.` };
   const keyOf = (own) => parameters.find((each) => each.name === own)?.key ?? own;
   const used = Object.fromEntries(Object.keys(group).map((own) => [own, settings[keyOf(own)]]));
-  const differ = axes().flatMap((axis) => differences(scheme, axis, axis === field ? used : parametersOf(setting, axis)));
-  const { filter, keyframe_ms: keyframes } = setting, corner = filter?.kind === "low-pass" ? filter.corner : null;
+  const differ = axes().flatMap((axis) => differences(setting, axis, axis === field ? used : parametersOf(setting, axis)));
+  const { filter, keyframe_ms: keyframes, link = {} } = setting, corner = filter?.kind === "low-pass" ? filter.corner : null;
   if (setting.sample !== TYPE) differ.push(`samples of ${TYPE}`);
   if (flown.low_pass === null ? filter : corner !== flown.low_pass) differ.push(flown.low_pass === null ? "no filter" : `a low-pass of ${flown.low_pass} Hz`);
   if (!isSame(keyframes, flown.keyframe_ms)) differ.push(`keyframes every ${flown.keyframe_ms} ms`);
+  if (link.gathering) differ.push("events sent at once");
+  if (link.step_bits) differ.push("no step bits");
   if (recording.uneven) differ.push("samples at an even rate");
   else if (!(recording.rate >= 0.99 * SLOWEST)) differ.push(`${SLOWEST} samples a second or more`);
   const far = `${fine(flown.beside)} times the error without a code`;

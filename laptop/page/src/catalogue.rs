@@ -4,8 +4,12 @@ use catalogue::{Kind, Parameter, Search, Unit};
 use lab::advise::verdict;
 use lab::scheme::Scheme;
 use serde_json::{Value, json};
+use spikewire_flight::UnitSize;
 
-/// All schemes.
+/// Units among which a user chooses for a gyroscope and for an accelerometer.
+const UNITS: [&[&str]; 2] = [&["rad/s", "deg/s"], &["m/s²", "g"]];
+
+/// All schemes, and the units of sensors.
 pub(crate) fn all() -> Value {
     let schemes = Scheme::all().map(|scheme| {
         let info = scheme.info();
@@ -20,7 +24,17 @@ pub(crate) fn all() -> Value {
             "parameters": parameters,
         })
     });
-    json!({ "schemes": schemes.collect::<Vec<_>>() })
+    let units = UNITS.map(|units| units.iter().map(|name| unit(name)).collect::<Vec<_>>());
+    json!({ "schemes": schemes.collect::<Vec<_>>(), "units": units })
+}
+
+/// Returns a unit as the page takes it: with the number of it that are 1 rad/s or 1 m/s², if it is a unit of turn rates or
+/// accelerations.
+pub(crate) fn unit(name: &str) -> Value {
+    let size = UnitSize::of(name);
+    let rate = size.and_then(UnitSize::rate);
+    let per_si = rate.or(size.and_then(UnitSize::acceleration)).map(f64::recip);
+    json!({ "name": name, "perSi": per_si, "isRate": rate.is_some() })
 }
 
 fn parameter(own: &Parameter) -> Value {

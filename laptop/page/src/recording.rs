@@ -187,7 +187,8 @@ impl Topic {
             "" => unit_of_name(field),
             topic => unit_of_name(&format!("{topic}.{field}")),
         };
-        let units: Vec<_> = fields.iter().map(unit).collect();
+        let units: Vec<_> =
+            fields.iter().map(|field| unit(field).map(crate::catalogue::unit)).collect();
         let groups: Vec<_> =
             fields.iter().map(|field| inertial::group(name, fields, field)).collect();
         json!({
@@ -254,7 +255,7 @@ pub(crate) fn load(channel: Channel, place: usize) -> Result<Value> {
         "rate": recording.rate,
         "uneven": uneven,
         "seconds": recording.seconds(),
-        "unit": recording.unit(),
+        "unit": recording.unit().map(crate::catalogue::unit),
         "notes": notes.collect::<Vec<_>>(),
         "segments": recording.segments.iter().map(|own| own.start).collect::<Vec<_>>(),
         "gaps": gaps(&recording),

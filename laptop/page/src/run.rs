@@ -1,5 +1,6 @@
 //! A scheme with its settings on the recording.
 
+use crate::flight::Link;
 use crate::host::send;
 use crate::recording;
 use anyhow::{Context, Result};
@@ -29,6 +30,9 @@ pub(crate) struct Choice {
     pub filter: Option<Filter>,
     /// Milliseconds between keyframes.
     pub keyframe_ms: Option<f64>,
+    /// Settings of the link, of a flight file that was opened.
+    #[serde(default)]
+    pub link: Option<Link>,
 }
 
 impl Choice {

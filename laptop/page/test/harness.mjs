@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { createHash } from "node:crypto";
 import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
@@ -14,6 +15,9 @@ export const work = mkdtempSync(join(tmpdir(), "page-"));
 export const spikewire = (...args) => execFileSync(SPIKEWIRE, args, { stdio: ["ignore", "pipe", "pipe"], maxBuffer: 1 << 28 });
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const url = pathToFileURL(PAGE).href;
+
+/** The style by which Playwright waits for a picture in Firefox, and which the page's policy refuses. */
+const WAITS = createHash("sha256").update("body {}").digest("base64");
 
 /** Which browser it is, and what it said that it should not. */
 export let engine;
@@ -62,8 +66,9 @@ export async function opened({ colorScheme = "light", isMobile, isFolded, ...opt
     const create = URL.createObjectURL;
     URL.createObjectURL = (blob) => create.call(URL, (globalThis.blob = blob));
   });
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && said.push(message.text()));
-  page.on("pageerror", (error) => said.push(String(error)));
+  const note = (words) => words.includes(WAITS) || said.push(words);
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && note(message.text()));
+  page.on("pageerror", (error) => note(String(error)));
   page.on("request", (request) => {
     const asked = request.url();
     if (!asked.startsWith(url) && !/^(blob|data):/.test(asked)) said.push(`a request off the page: ${asked}`);

@@ -49,8 +49,41 @@ export const steps = {
       }
       // One time axis for all, shown once, below a signal that is as wide as everything else.
       assert.equal(await page.evaluate(() => globalThis.spikewire.plots.all.filter((own) => own.axes[0].label).length), 1);
+      // No number stands on another one, however low the strips are.
+      if (name === "low") {
+        const crowded = () => page.evaluate(() => globalThis.spikewire.plots.all.slice(1).flatMap((own) => {
+          const axis = own.axes[1], places = (axis._values ?? []).map((words, at) => words && own.valToPos(axis._splits[at], "y")).filter((at) => at !== "").sort((a, b) => a - b);
+          return places.filter((at, place) => place && at - places[place - 1] < 10);
+        }));
+        for (const scheme of ["sf", "grf", "hsa"]) {
+          await page.click("#add");
+          await page.selectOption("#scheme", scheme);
+          await settled(page);
+        }
+        assert.deepEqual(await crowded(), []);
+        await drawer(page, "#show-spectrum");
+        await page.waitForTimeout(300);
+        assert.deepEqual(await crowded(), []);
+      }
       await page.context().close();
     }
+  },
+
+  async "has slider and chart in view together on a phone, with the values at a tap below them"() {
+    const page = await opened({ ...SIZES.phone, isFolded: true }, "");
+    await axesDrawn(page);
+    const box = (id) => page.locator(id).boundingBox(), { height } = SIZES.phone.viewport;
+    const stack = await box("#stack"), slider = await box("#main-parameter input[type=range]");
+    assert(stack.y >= 0 && stack.height > 0.45 * height && slider.y + slider.height <= height, `chart from ${stack.y} to ${stack.y + stack.height}, slider to ${slider.y + slider.height}`);
+    const signal = await page.locator("#plots .u-over").first().boundingBox();
+    await page.mouse.click(signal.x + 100, signal.y + 50);
+    await page.waitForSelector(".cursor");
+    const table = await box(".cursor"), plots = await box("#plots");
+    assert(table.y >= plots.y + plots.height && table.x >= 0 && table.x + table.width <= SIZES.phone.viewport.width, JSON.stringify(table));
+    await apart(page, "a tap on a phone");
+    await accessible(page, "a tap on a phone");
+    await picture(page, "tap", { fullPage: true });
+    await page.context().close();
   },
 
   async "drags the threshold on the signal, zooms in the overview, and shows values under the pointer"() {
@@ -99,7 +132,11 @@ export const steps = {
     assert.equal(value, written);
     const short = (number) => String(Number(number.toPrecision(4)));
     const under = await page.textContent("#under");
-    assert(under.includes(`gyro_x ${short(value)} rad/s`) && under.includes(` ${short(decoded)} rad/s (off by ${short(decoded - value)})`) && /from the mark [\d.]+ s/.test(under), under);
+    assert(under.includes(`gyro_x ${short(value)} rad/s`) && /from the mark [\d.]+ s/.test(under), under);
+    const first = (place) => cursor(page, place).then((cells) => cells.map(Number));
+    assert.equal((await first("gyro_x"))[0], Number(short(value)));
+    assert.equal((await first("SF, decoded"))[0], Number(short(decoded)));
+    assert.equal((await first("SF, error"))[0], Number(short(decoded - value)));
     // Another axis is opened from its strip.
     await page.locator(".axis").nth(4).click();
     await page.waitForTimeout(50);
@@ -119,6 +156,56 @@ export const steps = {
     const peak = heights.indexOf(Math.max(...heights));
     assert.equal((peak + 1) / (2 * (heights.length + 1)), 1 / 16);
     assert(Math.abs(heights[peak] - 3) < 0.02, `a sine of 3 has the height ${heights[peak]}`);
+  },
+
+  async "moves cursor and mark with the keyboard, and tells all series and their differences"() {
+    const page = await opened({ viewport: WHOLE.low });
+    await page.click("#add");
+    await page.selectOption("#scheme", "sod");
+    await settled(page);
+    await enter(page, "#parameter-threshold", 0.1);
+    await settled(page);
+    const at = () => page.evaluate(() => {
+      const { pointed, mark, view, runs, recording: { arrays: { values } } } = globalThis.spikewire.plots;
+      const series = [values, ...runs.map(({ arrays: { decoded } }) => decoded)];
+      const spikes = runs.map(({ arrays: { sample, up } }) => [...sample].reduce((sum, own, place) => (own >= mark && own < pointed ? sum + (up[place] ? 1 : -1) : sum), 0));
+      return { pointed, mark, view, values: series.map((own) => own[pointed]), marked: series.map((own) => own[mark]), spikes };
+    });
+    const press = async (...keys) => { for (const key of keys) await page.keyboard.press(key); };
+    await page.focus("#plots");
+    await press("+", "+", "+");
+    const { view } = await at();
+    await press("ArrowRight", "Shift+ArrowRight");
+    const { pointed } = await at();
+    assert((await at()).view[0] > view[0] && pointed > 0);
+    await press("Shift+ArrowRight", "Shift+ArrowLeft", "Shift+ArrowRight");
+    assert.equal((await at()).pointed, pointed + 1, "one sample where few are in view");
+    await press("Enter");
+    for (let step = 0; step < 40; step++) await press("Shift+ArrowRight");
+    const { mark, values, marked, spikes, ...own } = await at();
+    assert.deepEqual([mark, own.pointed], [pointed + 1, pointed + 41]);
+    const short = (number) => String(Number(number.toPrecision(4)));
+    for (const [place, name] of ["gyro_x", "A SF, decoded", "B SoD, decoded"].entries()) {
+      assert.deepEqual(await cursor(page, name), [values[place], marked[place], values[place] - marked[place]].map(short), name);
+    }
+    assert.deepEqual(await cursor(page, "B SoD, error"), [values[2] - values[0], marked[2] - marked[0], values[2] - values[0] - (marked[2] - marked[0])].map(short));
+    for (const [place, name] of ["A SF, spikes", "B SoD, spikes"].entries()) assert.equal((await cursor(page, name))[2].replace("+", ""), String(spikes[place]), name);
+    assert(spikes[1] !== 0, "spikes between mark and cursor");
+    assert.match(await page.textContent(".cursor thead"), /cursor[\d.]+ s\s*mark[\d.]+ s\s*difference[\d.]+ s/);
+    await apart(page, "a cursor");
+    await accessible(page, "a cursor");
+    await picture(page, "cursor");
+    // It stays when the knob moves, goes out of view with the view, and comes back with the next step.
+    await enter(page, "#parameter-threshold", 0.3);
+    await settled(page);
+    assert.deepEqual([(await at()).pointed, await page.isVisible(".cursor")], [own.pointed, true]);
+    await page.focus("#plots");
+    await press("0", "Escape");
+    assert.deepEqual([(await at()).pointed, (await at()).mark, await page.locator(".cursor").count()], [undefined, undefined, 0]);
+    await page.keyboard.press("Control+z");
+    await settled(page);
+    assert.notEqual(await page.inputValue("#parameter-threshold"), "0.3");
+    await page.context().close();
   },
 
   async "is clean for everybody: five sizes, light and dark, nothing on anything else, nothing undecided"() {
@@ -168,6 +255,12 @@ export const steps = {
     }
   },
 };
+
+/** The cells of a series in the table at the cursor: at the cursor, at the mark, and between the two. */
+const cursor = (page, name) => page.evaluate((own) => {
+  const row = [...document.querySelectorAll(".cursor tbody tr")].find(({ cells: [head] }) => head.textContent === own);
+  return row ? [...row.cells].slice(1).map(({ textContent }) => textContent) : [];
+}, name);
 
 /** All six axes are coded by the settings. */
 async function axesDrawn(page) {

@@ -143,6 +143,28 @@ export function mcap() {
   ]);
 }
 
+/** A blackbox log of full frames alone, at 2000 a second, whose head tells the accelerometer's counts. */
+export function blackbox(frames) {
+  const fields = ["loopIteration", "time", ...[0, 1, 2].map((axis) => `gyroADC[${axis}]`), ...[0, 1, 2].map((axis) => `accSmooth[${axis}]`)];
+  const head = Buffer.from(`H Product:Blackbox flight data recorder by Nicholas Sherlock\nH Data version:2\nH I interval:1\nH P interval:1/1\nH acc_1G:2048\nH Field I name:${fields}\nH Field I signed:0,0,1,1,1,1,1,1\nH Field I predictor:0,0,0,0,0,0,0,0\nH Field I encoding:1,1,0,0,0,0,0,0\nH Field P predictor:6,2,1,1,1,1,1,1\nH Field P encoding:9,0,0,0,0,0,0,0\n`);
+  const bytes = Buffer.alloc(head.length + 32 * frames);
+  let at = head.copy(bytes);
+  const unsigned = (value) => {
+    let rest = value;
+    for (; rest > 127; rest = Math.floor(rest / 128)) bytes[at++] = (rest % 128) + 128;
+    bytes[at++] = rest;
+  };
+  const signed = (value) => unsigned(value < 0 ? -2 * value - 1 : 2 * value);
+  for (let frame = 0; frame < frames; frame++) {
+    bytes[at++] = "I".charCodeAt(0);
+    unsigned(frame);
+    unsigned(1_000_000 + 500 * frame);
+    for (const axis of [0, 1, 2]) signed(Math.round(100 * Math.sin(frame * 0.01 + axis)));
+    for (const axis of [0, 1, 2]) signed(Math.round(1000 * Math.sin(frame * 0.01 + axis) + (axis === 2 ? 2048 : 0)));
+  }
+  return bytes.subarray(0, at);
+}
+
 /** A table as EuRoC's, whose names have commas, quotes and units. */
 export const euroc = () => `"#timestamp [ns]","counter","w_RS_S_x [rad s^-1]","w_RS_S_y [rad s^-1]","w_RS_S_z [rad s^-1]","a_RS_S_x, raw [m s^-2]","a_RS_S_y, raw [m s^-2]","a_RS_S_z, ""raw"" [m s^-2]"\n`
   + each((sample) => `${sample * 5_000_000},${sample},${[0, 1, 2].map((axis) => wave(sample, axis)).join()},${[0, 1, 2].map((axis) => 9 * wave(sample, axis)).join()}\n`).join("");

@@ -4,20 +4,21 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { choose, compare, DATA, drawer, drop, enter, exported, LOGS, opened, settled, spikewire, text, work } from "./harness.mjs";
-import { bag, decoded, euroc, mcap, px4, px4Raw, ulog } from "./made.mjs";
+import { bag, blackbox, decoded, euroc, mcap, px4, px4Raw, ulog } from "./made.mjs";
 
 export const steps = {
-  async "opens ten logs of seven formats on their gyroscope"() {
+  async "opens sixteen logs of nine formats on their gyroscope"() {
     const page = await opened();
-    const made = { "px4.ulg": px4(), "newer.ulg": px4Raw(), "one.ulg": ulog(), "imu.bag": bag(), "imu.mcap": mcap(), "euroc.csv": Buffer.from(euroc()), "decoded.csv": Buffer.from(decoded()) };
+    const made = { "px4.ulg": px4(), "newer.ulg": px4Raw(), "one.ulg": ulog(), "imu.bag": bag(), "imu.mcap": mcap(), "euroc.csv": Buffer.from(euroc()), "decoded.csv": Buffer.from(decoded()), "acc.bbl": blackbox(4000) };
     let right = 0;
     for (const [name, topic, field, axes] of [
-      ["hexarotor.csv", "", "gyro_x", 6], ["euroc.csv", "", "w_RS_S_x [rad s^-1]", 6], ["decoded.csv", "", "gyroADC[0] (deg/s)", 3],
+      ["hexarotor.csv", "", "gyro_x", 6], ["vtol_at_rest.csv", "", "gyro_x", 6], ["euroc.csv", "", "w_RS_S_x [rad s^-1]", 6], ["decoded.csv", "", "gyroADC[0] (deg/s)", 3],
       ["px4.ulg", "sensor_combined", "gyro_rad[0]", 6], ["newer.ulg", "sensor_gyro", "x", 3], ["one.ulg", "gyro", "rate", 0],
-      ["log.bin", "IMU", "GyrX", 2], ["log.tlog", "RAW_IMU", "xgyro", 6], ["imu.bag", "/imu/data", "angular_velocity.x", 6],
+      ["log.bin", "IMU", "GyrX", 2], ["log.log", "IMU", "GyrX", 2], ["log.db3", "/imu", "rate", 0], ["log.tlog", "RAW_IMU", "xgyro", 6], ["imu.bag", "/imu/data", "angular_velocity.x", 6],
       ["imu.mcap", "/imu/data", "angular_velocity.x", 6], ["log.bbl", "main", "gyroADC[0]", 3],
+      ["acc.bbl", "main", "gyroADC[0]", 6], ["log.bag", "/imu", "rate", 0],
     ]) {
-      const bytes = made[name] ?? readFileSync(name === "hexarotor.csv" ? join(DATA, name) : join(LOGS, name));
+      const bytes = made[name] ?? readFileSync(join(name.endsWith(".csv") ? DATA : LOGS, name));
       await drop(page, { name, bytes });
       assert.equal(await page.textContent("#file-error"), "", name);
       assert.deepEqual([await page.inputValue("#topic"), await page.inputValue("#field")], [topic, field], name);
@@ -106,6 +107,65 @@ export const steps = {
     writeFileSync(join(work, "own.csv"), await exported(page, "csv"));
     spikewire("convert", "--from", "csv", "--to", "es", join(work, "own.csv"), "-o", events);
     assert((await exported(page, "es")).equals(readFileSync(events)));
+    await page.context().close();
+  },
+
+  async "shows the beginning of a large log within three seconds, and keeps the picture before a slow one"() {
+    const page = await opened();
+    const seen = () => page.evaluate(() => {
+      const { recording } = globalThis.spikewire.plots;
+      return { about: document.getElementById("about").textContent, samples: recording.samples, name: recording.name, isBeginning: Boolean(recording.isBeginning), isInert: document.getElementById("settings").inert, isDimmed: document.body.classList.contains("dimmed") };
+    });
+    const large = join(work, "large.bbl"), slow = join(work, "slow.csv"), refused = join(work, "refused.csv");
+    writeFileSync(large, blackbox(1_500_000));
+    await page.setInputFiles("#choose", large);
+    await page.waitForFunction(() => globalThis.spikewire.plots.recording.isBeginning && document.getElementById("about").textContent.includes("%"), null, { timeout: 3000 });
+    const beginning = await seen();
+    assert.match(beginning.about, /^reading large\.bbl … \d+ % of \d+ MB, of which the beginning is shown$/);
+    assert.deepEqual([beginning.name, beginning.isInert, beginning.isDimmed], ["gyroADC[0]", true, true]);
+    assert(beginning.samples > 50_000 && beginning.samples < 1_500_000, `${beginning.samples} samples of the beginning`);
+    await settled(page);
+    const whole = await seen();
+    assert.deepEqual([whole.samples, whole.isBeginning, whole.isInert, whole.isDimmed], [1_500_000, false, false, false]);
+    // A table that is slow: the picture before it stays, dimmed.
+    const lines = (count) => `rate\n${Array.from({ length: count }, (_, at) => (at % 1000) / 7).join("\n")}\n`;
+    writeFileSync(slow, lines(1_200_000));
+    await page.setInputFiles("#choose", slow);
+    await page.waitForFunction(() => document.getElementById("about").textContent.startsWith("reading slow.csv"), null, { timeout: 3000 });
+    const during = await seen();
+    assert.deepEqual([during.samples, during.isBeginning, during.isInert, during.isDimmed], [1_500_000, false, true, true]);
+    await settled(page);
+    assert.match((await seen()).about, /^slow\.csv: rate, 1,200,000 samples/);
+    // A large one that is refused at its end: its beginning goes again.
+    writeFileSync(refused, `${lines(2_000_000)}word\n`);
+    await page.setInputFiles("#choose", refused);
+    await page.waitForFunction(() => globalThis.spikewire.plots.recording.isBeginning);
+    await settled(page);
+    assert.match(await page.textContent("#file-error"), /refused\.csv.*`word` is not a number/);
+    assert.match(await page.textContent("#notice"), /^The picture is still that of slow\.csv\.$/);
+    assert.deepEqual([(await seen()).samples, (await seen()).isDimmed], [1_200_000, true]);
+    await page.click("#back");
+    await settled(page);
+    assert.deepEqual([(await seen()).samples, (await seen()).isDimmed], [1_200_000, false]);
+    await page.context().close();
+  },
+
+  async "knows the size of each unit as the program does"() {
+    const page = await opened({}, "");
+    // The head of a blackbox log tells how many counts are 1 g: it opens as it flew, on all six axes.
+    await drop(page, { name: "acc.bbl", bytes: blackbox(20_000) });
+    await page.waitForFunction(() => document.getElementById("chip").textContent.startsWith("Flew so in simulation"), null, { timeout: 30_000 }).catch(async () => assert.fail(await page.textContent("#verdict")));
+    assert.deepEqual(await page.locator("#axes .group").allTextContents(), ["Turn rate, deg/s · 2000 Hz", "Acceleration, g/2048 · 2000 Hz"]);
+    await page.locator(".axis").nth(4).click();
+    await settled(page);
+    assert.equal(Number(await page.inputValue("#parameter-threshold")), Number(((2.5603598560838168 / 9.80665) * 2048).toPrecision(6)));
+    assert.equal(await page.isVisible("#unit-field"), false);
+    for (const [unit, perSi, isRate] of [["rad/s", 1, true], ["deg/s", 180 / Math.PI, true], ["m/s^2", 1, false], ["g", 1 / 9.80665, false], ["mg", 1000 / 9.80665, false]]) {
+      const names = ["x", "y", "z"].map((axis) => `${isRate ? "gyro" : "accel"}_${axis} (${unit})`);
+      await drop(page, { name: "unit.csv", bytes: Buffer.from(`time_us,${names}\n${Array.from({ length: 900 }, (_, at) => `${at * 2000},${[0, 1, 2].map((axis) => perSi * 20 * Math.sin(at / 30 + axis)).join()}`).join("\n")}\n`) });
+      assert.equal(Number(await page.inputValue("#parameter-threshold")), Number(((isRate ? 0.09314549722916148 : 2.5603598560838168) * perSi).toPrecision(6)), unit);
+      assert.equal(await page.isVisible("#unit-field"), false, unit);
+    }
     await page.context().close();
   },
 

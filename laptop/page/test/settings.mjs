@@ -49,6 +49,44 @@ export const steps = {
     await page.context().close();
   },
 
+  async "writes a flight's file with all that the one it was opened with says"() {
+    const page = await opened();
+    const names = ["roll", "pitch", "yaw"], fields = ["gyro_x", "gyro_y", "gyro_z"];
+    const channel = (name, place) => `\n[[channel]]\nname = "${name}"\nsource = "${fields[place]}"\nunit = "rad/s"\nparameters = { spikes = 4, start = 0, threshold = 0.${place + 1} }\n`;
+    const given = `version = 1\nscheme = "sod"\nsample = "f32"\nperiod = 5038 # µs\nkeyframe_every = 37 # samples\nclock_ppm = 15000\nstep_bits = 4\ngathering = 2500 # µs\nfull_every = 250000 # µs\n${names.map(channel).join("")}`;
+    const drops = async (toml) => {
+      await drop(page, { name: "flight.toml", bytes: Buffer.from(toml) });
+      await page.waitForFunction(() => document.querySelectorAll(".axis span").length === 6 && [...document.querySelectorAll(".axis span")].every((words) => /spikes a second/.test(words.textContent)));
+    };
+    /** A file without the axes that the first one did not have. */
+    const withoutForces = (toml) => `${toml.replace(/\[\[channel\]\]\nname = "accel[^[]*/g, "").trimEnd()}\n`;
+    const written = async () => withoutForces(await text(page, "flight"));
+    await drops(given);
+    assert.equal(await written(), given);
+    assert.match(await page.textContent("#notes"), /step_bits 4, gathering 2500 µs, full_every 250000 µs, clock_ppm 15000/);
+    assert.equal(await page.inputValue("#parameter-start"), "0");
+    // The program reads the same flight from both: a receiver of the one takes frames of the other.
+    const [before, after] = ["before.toml", "after.toml"].map((name) => join(work, name));
+    writeFileSync(before, given);
+    writeFileSync(after, await written());
+    const encoded = (file) => spikewire("encode", "--flight", file, join(DATA, "hexarotor.csv")).toString();
+    assert.equal(encoded(after).replaceAll(after, before), encoded(before));
+    // A link brings all of it, other settings leave it, and a code without steps has no numbers of them.
+    const link = await text(page, "link"), other = await opened({}, new URL(link).hash);
+    await other.waitForFunction(() => document.querySelectorAll(".axis span").length === 6 && [...document.querySelectorAll(".axis span")].every((words) => /spikes a second/.test(words.textContent)));
+    assert.equal(withoutForces(await text(other, "flight")), given);
+    await other.context().close();
+    await page.selectOption("#scheme", "grf");
+    await settled(page);
+    const grf = await text(page, "flight");
+    assert.match(grf, /clock_ppm = 15000\ngathering = 2500 # µs\nfull_every = 250000 # µs\n[^]*name = "roll"\nsource = "gyro_x"/);
+    assert.doesNotMatch(grf, /step_bits/);
+    // Samples in counts are not what the page codes.
+    await drop(page, { name: "counts.toml", bytes: Buffer.from(given.replace('unit = "rad/s"', 'unit = "rad/s"\ncounts = 1000.0')) });
+    assert.match(await page.textContent("#file-error"), /^counts\.toml: roll has 1000 counts in a unit/);
+    await page.context().close();
+  },
+
   async "sets the bank that flew, says so, and filters as the program does"() {
     const page = await opened();
     // The loops that flew have 250 samples a second at least.

@@ -172,6 +172,16 @@ export const steps = {
     assert.match(await page.textContent("#verdict"), /threshold 0\.09315 where this is coarser on gyro_z/);
     await page.click("#as-flown");
     await settled(page);
+    // A flight's file may say more than the settings that flew.
+    const toml = await text(page, "flight");
+    for (const [more, words] of [["gathering = 1000", /events sent at once/], ["step_bits = 2", /no step bits/]]) {
+      await drop(page, { name: "more.toml", bytes: Buffer.from(toml.replace("clock_ppm", `${more}\nclock_ppm`)) });
+      assert.deepEqual([await chip(), words.test(await page.textContent("#verdict"))], ["Not as flown", true], more);
+    }
+    await drop(page, { name: "start.toml", bytes: Buffer.from(toml.replaceAll(", threshold =", ", start = 0.0, threshold =")) });
+    assert.deepEqual([await chip(), /no start on gyro_x/.test(await page.textContent("#verdict"))], ["Not as flown", true]);
+    await drop(page, { name: "same.toml", bytes: Buffer.from(toml) });
+    assert.equal(await chip(), "Flew so in simulation");
     // While another code is under way, the verdict and the figures of the one before are gone.
     const during = await page.evaluate(() => {
       const scheme = document.getElementById("scheme"), seen = [];

@@ -477,6 +477,13 @@ mod tests {
             assert_eq!(pace.elapsed(0, 100), Elapsed::Misfit);
             assert_eq!(pace.elapsed(-1_000, 100), Elapsed::Misfit);
         }
+        // A quarter of jitter, and 20 µs of drift in the one sample.
+        let mut pace = Pace::new(20_000);
+        pace.set(1_000, 1_000);
+        for since in [730, 1_270] {
+            assert_eq!(pace.elapsed(since, 100), Elapsed::Samples { samples: 1, slot: 0 });
+        }
+        assert_eq!([729, 1_271].map(|since| pace.elapsed(since, 100)), [Elapsed::Misfit; 2]);
         // A clock at one end of its tolerance, as measured.
         let mut pace = Pace::new(20_000);
         pace.set(1_000, 1_000);
@@ -621,7 +628,7 @@ mod tests {
         let mut pace = Pace::new(10);
         pace.set(10_000, 64);
         for (away, fits) in
-            [(0, true), (16, true), (-16, true), (28, false), (-28, false), (31, false)]
+            [(0, true), (17, true), (-17, true), (18, false), (-18, false), (31, false)]
         {
             let slot = pace.slot(10_000 + 3 * 64 + away, 100);
             let expected =
@@ -641,6 +648,23 @@ mod tests {
             let slot = pace.slot(10_000 + 3 * 64 + away, 100);
             let is_told = slot == Elapsed::Samples { samples: 1, slot: 3 };
             assert!(if fits { is_told } else { slot == Elapsed::Misfit }, "{away} {slot:?}");
+        }
+    }
+
+    /// Samples as short as their sub-timesteps: a late tick of the last one may be an early one of the next sample, which is
+    /// known less well.
+    #[test]
+    fn a_tick_that_may_be_the_next_samples_is_unknown() {
+        let mut pace = Pace::new(20_000);
+        pace.set(1_000, 100);
+        // 65 µs before the next sample: 25 of jitter, and 20 of drift in each of two samples.
+        for (after, slot) in [(900, Some(9)), (934, Some(9)), (935, None), (937, None)] {
+            let known = |slot| Elapsed::Samples { samples: 1, slot };
+            assert_eq!(
+                pace.slot(1_000 + after, 10),
+                slot.map_or(Elapsed::Unknown, known),
+                "{after}"
+            );
         }
     }
 
@@ -682,6 +706,42 @@ mod tests {
             (60_000, 58),
         ] {
             assert_eq!(pace.over(since), samples, "{since}");
+        }
+        // 25 µs in each of ten samples are a quarter of a period, which is too much.
+        let mut pace = Pace::new(25_000);
+        pace.set(1_000, 1_000);
+        assert_eq!([9_000, 10_000].map(|since| pace.over(since)), [9, 9]);
+    }
+
+    /// Longer pieces than can be measured, and another period, begin anew.
+    #[test]
+    fn what_cannot_be_measured_is_forgotten() {
+        let longest = i64::from(1 << 30);
+        for (since, samples, learned) in [
+            (1_280_000, 128, 120 + 128),
+            (1_290_000, 129, 0),
+            (longest, 100, 120 + 100),
+            (longest + 1, 100, 0),
+            (-1, 1, 0),
+        ] {
+            let mut pace = learned_in(1);
+            pace.learn(since, samples);
+            assert_eq!(pace.samples, learned, "{since} {samples}");
+        }
+        for (period, unit, learned) in [(10_000, 1_000, 120), (10_001, 1_000, 0), (10_000, 999, 0)]
+        {
+            let mut pace = learned_in(1);
+            pace.set(period, unit);
+            assert_eq!(pace.samples, learned, "{period} {unit}");
+        }
+    }
+
+    #[test]
+    fn the_measured_time_is_rounded_to_the_nearest() {
+        for (last, time) in [(10_060, 10_000), (10_061, 10_001)] {
+            let mut pace = learned_in(1);
+            pace.learn(last, 1);
+            assert_eq!(pace.time_of(1), time, "121 samples in {}", pace.span);
         }
     }
 

@@ -1,6 +1,7 @@
 //! `cargo xtask emulate IMAGE --part PART`: runs any image from its reset vector, with a sensor on its bus.
 
-use crate::checks::emulator;
+use crate::checks::emulator::{self, Run};
+use crate::checks::recording::Recording;
 use crate::common::{paths, usage};
 use anyhow::{Context, Result, ensure};
 use std::fs::{self, File};
@@ -8,19 +9,23 @@ use std::io::{Read, Write, stderr, stdout};
 use std::path::Path;
 
 const USAGE: &str = "\
-cargo xtask emulate IMAGE --part PART [--sensor SENSOR] [--seconds N] [--rtt] [TIME:FATE]...
+cargo xtask emulate IMAGE --part PART [--log LOG --flight FLIGHT.toml] [--sensor SENSOR] [--seconds N] [--rtt] [TIME:FATE]...
 
 Writes what left the serial port to standard output, such as frames for `spikewire listen - --flight flight.toml`.
 An access to an address that nothing models ends the run, and names it.
 
+  --log       what the sensor measures: any recording that `spikewire` reads. The sensor samples at the rate that the image
+              configures, in its own counts, and has the log's last sample until then; without a log, sines with noise
+  --flight    the file that the image was built with: it names the log's channels, their axes and units
   --part      rp2040, nrf52840, stm32f405, stm32h743, or crazyflie
   --sensor    icm42688p (default; bmi088 on a crazyflie), or bmi323
-  --seconds   of the part's time; default: 2
+  --seconds   of the part's time; default: the log's length, or 2
   --rtt       writes the defmt log to standard error
   TIME:FATE   such as 500:miso-cut 800:mend: breaks a wire and mends it, in ms; pico.mjs lists them";
 
 pub fn emulate(args: &[String]) -> Result<()> {
-    let (mut image, mut part, mut sensor, mut seconds) = (None, None, None, "2");
+    let (mut image, mut part, mut sensor, mut seconds) = (None, None, None, None);
+    let (mut log, mut flight) = (None, None);
     let (mut wants_log, mut fates) = (false, Vec::new());
     let mut args = args.iter().map(String::as_str);
     while let Some(arg) = args.next() {
@@ -28,7 +33,9 @@ pub fn emulate(args: &[String]) -> Result<()> {
         match arg {
             "--part" => part = Some(value()?),
             "--sensor" => sensor = Some(value()?),
-            "--seconds" => seconds = value()?,
+            "--seconds" => seconds = Some(value()?),
+            "--log" => log = Some(Path::new(value()?)),
+            "--flight" => flight = Some(Path::new(value()?)),
             "--rtt" => wants_log = true,
             fate if fate.contains(':') => fates.push(fate.to_owned()),
             path if image.is_none() && !path.starts_with('-') => image = Some(path),
@@ -47,14 +54,39 @@ pub fn emulate(args: &[String]) -> Result<()> {
         sensor.unwrap_or_default(),
         emulator::SENSORS.join(", ")
     );
-    let seconds =
-        seconds.parse().with_context(|| format!("`{seconds}` is no number of seconds"))?;
+    let seconds = seconds.map(|text| {
+        text.parse::<f64>().with_context(|| format!("`{text}` is no number of seconds"))
+    });
+    let seconds = seconds.transpose()?;
     let sensor = sensor.unwrap_or(if part == "crazyflie" { "bmi088" } else { "icm42688p" });
     let (image, directory) =
         (std::env::current_dir()?.join(image), paths::target().join("emulated/image"));
     check_image(&image)?;
+    let recording = match (log, flight) {
+        (Some(log), Some(flight)) => Some(Recording::read(flight, log)?),
+        (None, None) => None,
+        _ => {
+            return Err(usage(
+                "--log needs --flight, which names the log's channels, and --flight --log"
+                    .to_owned(),
+            ));
+        }
+    };
+    let table = directory.join("recording.csv");
+    if let Some(recording) = &recording {
+        recording.write(&table)?;
+    }
     _ = fs::remove_file(directory.join("uart")); // what an earlier image left
-    let run = emulator::strictly(part, &image, sensor, seconds, &directory, &fates);
+    let run = Run {
+        part,
+        image: &image,
+        sensor,
+        seconds: seconds.or(recording.as_ref().map(Recording::seconds)).unwrap_or(2.0),
+        directory: &directory,
+        fates: &fates,
+        recording: recording.is_some().then_some(&table),
+    };
+    let run = run.strictly();
     // An image that ends in a fault has said something, too.
     if let Ok(said) = fs::read(directory.join("uart")) {
         stdout().write_all(&said)?;

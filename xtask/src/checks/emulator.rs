@@ -372,51 +372,68 @@ fn emulate(
 ) -> Result<(Seen, PathBuf)> {
     let directory = paths::target().join("emulated").join(part.name);
     let fates: Vec<String> = fates.iter().map(|(at, name)| format!("{at}:{name}")).collect();
-    let seen = launch(part.memory, image, sensor, seconds, &directory, &fates, false)?;
+    let run = Run {
+        part: part.memory,
+        image,
+        sensor,
+        seconds,
+        directory: &directory,
+        fates: &fates,
+        recording: None,
+    };
+    let seen = run.on_emulator(false)?;
     Ok((seen, directory))
 }
 
-/// Runs an image on a part, with a sensor on its bus, and ends where it uses what nothing models.
-pub fn strictly(
-    part: &str,
-    image: &Path,
-    sensor: &str,
-    seconds: f64,
-    directory: &Path,
-    fates: &[String],
-) -> Result<Seen> {
-    launch(part, image, sensor, seconds, directory, fates, true)
+/// An image on a part, with a sensor on its bus.
+pub struct Run<'a> {
+    pub part: &'a str,
+    pub image: &'a Path,
+    pub sensor: &'a str,
+    pub seconds: f64,
+    /// Place for all that the run writes.
+    pub directory: &'a Path,
+    pub fates: &'a [String],
+    /// Table of what the sensor measures, as `Recording::write` writes it; without one, sines with noise.
+    pub recording: Option<&'a Path>,
 }
 
-/// Runs an image on a part; all other output goes to the directory.
-fn launch(
-    part: &str,
-    image: &Path,
-    sensor: &str,
-    seconds: f64,
-    directory: &Path,
-    fates: &[String],
-    is_strict: bool,
-) -> Result<Seen> {
-    let home = installed()?;
-    fs::create_dir_all(directory)?;
-    let mut emulator = if part == "rp2040" {
-        let mut node = command("node");
-        node.arg(home.join("pico.mjs")).env("STRICT", if is_strict { "1" } else { "0" });
-        node
-    } else {
-        // Always strict.
-        let mut python = command(unicorn()?);
-        python.arg(home.join("board.py")).arg(part);
-        python
-    };
-    emulator.args([image, Path::new(sensor)]).arg(seconds.to_string()).arg(directory).args(fates);
-    let seen: Seen =
-        serde_json::from_str(&output(&mut emulator)?).context("what the emulator says")?;
-    if let Some(fault) = seen.fault {
-        bail!("{fault}; the log says\n{}", log(image, directory)?);
+impl Run<'_> {
+    /// Runs the image, and ends where it uses what nothing models.
+    pub fn strictly(&self) -> Result<Seen> {
+        self.on_emulator(true)
     }
-    Ok(seen)
+
+    fn on_emulator(&self, is_strict: bool) -> Result<Seen> {
+        let Self { part, image, sensor, seconds, directory, fates, recording } = *self;
+        let home = installed()?;
+        fs::create_dir_all(directory)?;
+        let mut emulator = if part == "rp2040" {
+            let mut node = command("node");
+            node.arg(home.join("pico.mjs")).env("STRICT", if is_strict { "1" } else { "0" });
+            node
+        } else {
+            // Always strict.
+            let mut python = command(unicorn()?);
+            python.arg(home.join("board.py")).arg(part);
+            python
+        };
+        match recording {
+            Some(recording) => emulator.env("RECORDING", recording),
+            None => emulator.env_remove("RECORDING"),
+        };
+        emulator
+            .args([image, Path::new(sensor)])
+            .arg(seconds.to_string())
+            .arg(directory)
+            .args(fates);
+        let seen: Seen =
+            serde_json::from_str(&output(&mut emulator)?).context("what the emulator says")?;
+        if let Some(fault) = seen.fault {
+            bail!("{fault}; the log says\n{}", log(image, directory)?);
+        }
+        Ok(seen)
+    }
 }
 
 /// Runs small images on the emulated STM32F405: modelled peripherals must work, and access to any other must end the
@@ -571,7 +588,7 @@ fn is_near(
 }
 
 /// Parses a file's lines of numbers, separated by commas.
-fn numbers(directory: &Path, name: &str) -> Result<Vec<Vec<i64>>> {
+pub fn numbers(directory: &Path, name: &str) -> Result<Vec<Vec<i64>>> {
     let text = fs::read_to_string(directory.join(name))?;
     let line = |line: &str| line.split(',').map(str::parse).collect::<Result<Vec<i64>, _>>();
     Ok(text.lines().map(line).collect::<Result<_, _>>()?)

@@ -18,6 +18,7 @@ pub mod peers;
 pub mod rate_loop;
 pub mod real_boards;
 pub mod reckon;
+mod recording;
 pub mod ros;
 pub mod ros2;
 pub mod simulated_drone;

@@ -2,11 +2,20 @@
 
 use crate::common::{command, links, output, paths, run};
 use crate::programs::python;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail, ensure};
 use std::{
     fs,
     path::{Path, PathBuf},
 };
+
+/// Most words of README, docs and the crates' READMEs together, as `wc -w` counts them. Who adds some deletes others.
+const MOST_WORDS: usize = 40_000;
+
+/// Most columns of a table; a wider one is a page in disguise, or a file.
+const MOST_COLUMNS: usize = 8;
+
+/// Most characters of a table's cell, without the targets of links.
+const LONGEST_CELL: usize = 200;
 
 /// Builds the book; returns its directory. A page that no part lists, or a link that leads nowhere, is an error.
 pub fn build() -> Result<PathBuf> {
@@ -41,8 +50,15 @@ fn gather(to: &Path) -> Result<()> {
         "*.md",
     ]))?;
     let root = paths::root();
+    let mut words = 0;
     for page in listed.lines().filter(|page| root.join(page).is_file()) {
         let text = fs::read_to_string(root.join(page))?;
+        if let Some(row) = wide_row(&text) {
+            bail!("{page}: this row has too many columns or too long a cell: {row}");
+        }
+        if page.starts_with("docs/") || page.ends_with("README.md") {
+            words += text.split_whitespace().count();
+        }
         for file in links::relative(&text).filter_map(|link| links::target(page, link)) {
             // What is missing, the builder reports with the page's name.
             if !file.ends_with(".md") && root.join(&file).is_file() {
@@ -51,7 +67,25 @@ fn gather(to: &Path) -> Result<()> {
         }
         fs::write(place(to, page)?, shown(&text))?;
     }
+    ensure!(words <= MOST_WORDS, "the pages have {words} words; {MOST_WORDS} are allowed");
     Ok(())
+}
+
+/// Returns the first row of a table that has too many columns or too long a cell.
+fn wide_row(text: &str) -> Option<&str> {
+    text.lines().filter(|line| line.starts_with('|')).find(|row| {
+        let cells: Vec<&str> = row.trim_end().trim_matches('|').split('|').collect();
+        let is_long = cells.iter().any(|cell| seen_length(cell.trim()) > LONGEST_CELL);
+        is_long || cells.len() > MOST_COLUMNS
+    })
+}
+
+/// Returns a cell's number of characters as a reader sees it: without the targets of its links.
+fn seen_length(cell: &str) -> usize {
+    let mut parts = cell.split("](");
+    let first = parts.next().unwrap_or_default();
+    let behind_targets = parts.map(|part| part.split_once(')').map_or("", |(_, rest)| rest));
+    first.chars().count() + behind_targets.map(|rest| rest.chars().count()).sum::<usize>()
 }
 
 /// Returns a file's path below a directory, whose directories are made.
@@ -81,7 +115,17 @@ fn shown(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::shown;
+    use super::{seen_length, shown, wide_row};
+
+    #[test]
+    fn wide_tables_are_found() {
+        let (eight, nine) = ("|a".repeat(8) + "|", "|a".repeat(9) + "|");
+        assert_eq!(wide_row(&eight), None);
+        assert_eq!(wide_row(&format!("b\n{eight}\n{nine}")), Some(nine.as_str()));
+        let (fits, long) = (format!("| {} |", "c".repeat(200)), format!("| {} |", "c".repeat(201)));
+        assert_eq!(wide_row(&format!("{fits}\n{long}")), Some(long.as_str()));
+        assert_eq!(seen_length("[de](https://f) g [h](i) j"), "[de g [h j".len());
+    }
 
     #[test]
     fn lines_that_rustdoc_hides_are_not_shown() {

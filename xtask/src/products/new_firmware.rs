@@ -19,6 +19,11 @@ use toml::{Table, Value};
 #[allow(dead_code, reason = "a template needs sizes of units, too")]
 mod names;
 
+/// The axis that a channel's name tells a template: rates about x, y, z are 0 to 2, accelerations along them 3 to 5.
+pub fn axis(name: &str) -> Option<usize> {
+    names::axis(name)
+}
+
 pub const USAGE: &str = "cargo xtask new-firmware DIR --board NAME [--git URL]
 cargo xtask new-firmware DIR --hal NAME --flight FLIGHT.toml [--git URL]";
 

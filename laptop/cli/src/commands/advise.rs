@@ -11,6 +11,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::advise::{Advice, AdviseRequest, BankAdvice, advise};
 use lab::dataset::Found;
+use lab::flight::visible;
 use lab::input::{InputOptions, Unnamed};
 use lab::output::Output;
 use lab::plot::{Picture, draw};
@@ -133,6 +134,7 @@ pub(crate) fn run(options: &Advise) -> Result<()> {
                 if !options.json {
                     let page = advised.page();
                     let page = if is_single { page } else { format!("{log}\n{page}\n") };
+                    let page = words::page(&page);
                     if is_stdout { eprint!("{page}") } else { answer(page)? }
                 }
                 let entry = match why {
@@ -226,7 +228,7 @@ impl Advise {
         let tell = |progress: &Progress| {
             bar.set_length(progress.total as u64);
             bar.set_position(progress.done as u64);
-            bar.set_message(progress.words.clone());
+            bar.set_message(visible(&progress.words));
         };
         let watch = Watch { is_stopped: &|| stop.is_due(), tell: &tell };
         let channels = advise(request, &watch)?;

@@ -54,7 +54,7 @@ pub(crate) fn run(options: &Bench) -> Result<()> {
     let results = bench::run(cases, tests, seed, |samples| bar.inc(samples));
     let seconds = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
-    eprintln!(
+    say!(
         "{samples} samples through 8 schemes, there and back, in {seconds:.2} s on {} cores",
         rayon::current_num_threads()
     );

@@ -58,7 +58,7 @@ pub(crate) fn run(options: &Capture) -> Result<()> {
         let captured = rtt::capture(channel, &mut output, || stop.is_due());
         // Bytes received before the channel failed are kept.
         output.finish()?;
-        eprintln!("{} bytes", captured.bytes);
+        say!("{} bytes", captured.bytes);
         captured.end
     })?)
 }

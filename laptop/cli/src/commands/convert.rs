@@ -1,7 +1,7 @@
 //! `spikewire convert`: converts events from any format to any other, in constant memory.
 
 use crate::inputs::StreamOptions;
-use crate::words::option;
+use crate::words::{self, option};
 use anyhow::Result;
 use catalogue::run::Worded;
 use clap::Args;
@@ -68,8 +68,8 @@ pub(crate) fn run(options: &Convert) -> Result<()> {
         }
     }
     stream.finish(&mut output)?;
-    eprint!("{}", stream.spelled(option));
-    eprintln!("{}", stream.written(output.bytes()));
+    eprint!("{}", words::page(&stream.spelled(option).to_string()));
+    say!("{}", stream.written(output.bytes()));
     stream.check_format(*from, port.name())?;
     Ok(output.finish()?)
 }

@@ -7,7 +7,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::dataset::{self, Code, Flights, Outcome, Request};
-use lab::flight::Flight;
+use lab::flight::{Flight, visible};
 use lab::watch::Progress;
 use std::fmt::Write;
 use std::num::NonZeroUsize;
@@ -72,7 +72,7 @@ pub(crate) fn run(options: &Dataset) -> Result<()> {
     let (outcome, rows) = dataset::run(&options.request()?, &mut |progress: &Progress| {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);
-        bar.set_message(progress.words.clone());
+        bar.set_message(visible(&progress.words));
     })?;
     bar.finish_and_clear();
     let Outcome { logs, done_before, gone, refused, passed_over, samples, events, train, test } =

@@ -134,7 +134,7 @@ fn decode(
                 decoding.advance(first, &mut events).and_then(|()| decoding.skip(count))
             }
             Item::End { samples } => {
-                reader.notes().iter().for_each(|note| eprintln!("{note}"));
+                reader.notes().iter().for_each(|note| say!("{note}"));
                 decoding
                     .advance(samples, &mut events)
                     .map_err(|error| error.at(&reader.place()))?;

@@ -167,22 +167,22 @@ fn encode<C: PixelCode>(options: &Frames, code: Option<C>) -> Result<()> {
     }
 
     let seconds = rate.micros(frames) as f64 / 1e6;
-    eprintln!("{frames} frames of {} x {} pixels, {seconds:.2} s", size.0, size.1);
+    say!("{frames} frames of {} x {} pixels, {seconds:.2} s", size.0, size.1);
     if let Some(encoder) = encoder {
         let events = ups + downs;
         let per_second = events as f64 / seconds;
-        eprintln!(
+        say!(
             "{events} events, {ups} up and {downs} down: {per_second:.0} a second, at most {busiest} a frame"
         );
         if let Some(budget) = options.budget {
-            eprintln!(
+            say!(
                 "{} events beyond {budget} a frame kept back, counted in each frame",
                 encoder.over_budget()
             );
         }
     }
     if let Some(sink) = sink {
-        eprintln!("{} bytes written", sink.finish()?);
+        say!("{} bytes written", sink.finish()?);
     }
     Ok(preview.map_or(Ok(()), Preview::finish)?)
 }

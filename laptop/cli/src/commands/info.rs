@@ -70,13 +70,15 @@ pub(crate) fn run(options: &Info) -> Result<()> {
             }
         };
         if !options.json {
+            let mut page = Vec::new();
             if !is_single {
-                writeln!(output, "{log}")?;
+                writeln!(page, "{log}")?;
             }
-            content.write(&name_of(path), &mut output)?;
+            content.write(&name_of(path), &mut page)?;
             if !is_single {
-                writeln!(output)?;
+                writeln!(page)?;
             }
+            write!(output, "{}", words::page(&String::from_utf8_lossy(&page)))?;
         }
         let (notes, content) = (content.notes(), options.json.then(|| content.json()));
         all.push(Log { log, refused: None, notes, content });

@@ -5,7 +5,7 @@ use crate::live::Live;
 use crate::options::{agreed, augment, given, option_group, schemes};
 use crate::panel::{Panel, Screen};
 use crate::stop::Stop;
-use crate::words::{of_lab, option};
+use crate::words::{self, of_lab, option};
 use anyhow::{Result, bail};
 use catalogue::Parameter;
 use catalogue::run::{Asked, Known, SampleType, Settings, Worded};
@@ -213,10 +213,10 @@ fn listen(
     if let Some(screen) = &mut screen {
         screen.finish(&stream)?;
     }
-    eprint!("{}", stream.spelled(option));
+    eprint!("{}", words::page(&stream.spelled(option).to_string()));
     match stream.check_format(options.from, port.name()) {
         // A board on a serial port may still be silent, or the baud rate may be wrong: a warning.
-        Err(error) if options.baud.is_some() => eprintln!("{}", of_lab(&error)),
+        Err(error) if options.baud.is_some() => say!("{}", of_lab(&error)),
         checked => checked?,
     }
     if let Some(file) = file {
@@ -311,7 +311,7 @@ impl Listen {
             let asked = asked.channel(scheme.info(), channel, channels)?;
             let settings = scheme.resolve(sample, &asked, &known)?;
             if let Some(rounding) = rounding(&settings) {
-                eprintln!("{rounding}");
+                say!("{rounding}");
             }
             all.push(settings);
         }

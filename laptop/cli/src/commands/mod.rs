@@ -14,6 +14,7 @@ pub(crate) mod listen;
 pub(crate) mod network;
 mod network_rule;
 pub(crate) mod plot;
+pub(crate) mod samples;
 pub(crate) mod score;
 pub(crate) mod signal;
 pub(crate) mod tune;

@@ -176,22 +176,26 @@ enum Converted {
 }
 
 impl Converted {
-    /// Reads the network's file. If `outputs` of the training framework are given, they show by which rule its neurons
+    /// Converts the network of a file. If `outputs` of the training framework are given, they show by which rule its neurons
     /// step, and the rule is reported on standard error.
-    fn read(options: &Network, driven: &Driven, outputs: Option<&Outputs>) -> Result<Self> {
-        let Network { trained: path, target, dt, rule, .. } = options;
-        let file = File::read(path)?;
+    fn from_file(
+        file: File,
+        options: &Network,
+        driven: &Driven,
+        outputs: Option<&Outputs>,
+    ) -> Result<Self> {
+        let Network { target, dt, rule, .. } = options;
         let seconds = driven.step_us.map(|step| step * 1e-6);
         let mut asked = rule.asked(*dt);
         if let Some(outputs) = outputs {
             let found = file.find_rule(&asked, &driven.steps, outputs);
             if let Some(found) = found.map_err(|error| error.at(options.recorded()))? {
                 let (rule, steps) = (found.settings(words::option), driven.steps.len());
-                eprintln!("rule found: {rule} gives the recorded outputs in all {steps} steps");
+                say!("rule found: {rule} gives the recorded outputs in all {steps} steps");
                 asked = found.asked;
             }
         } else if matches!(file, File::Nir(_)) {
-            eprintln!(
+            say!(
                 "the rule is as the options say: a wrong one gives other spikes, which --trained-spikes or \
                  --trained-potentials would show"
             );
@@ -237,8 +241,9 @@ pub(crate) fn run(options: &Network) -> Result<()> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let framework = framework(options)?;
     let framework = framework.as_ref();
-    let converted = Converted::read(options, &driven, framework)
-        .map_err(|error| error.context(name.clone()))?;
+    let file = File::read(path)?;
+    let converted =
+        Converted::from_file(file, options, &driven, framework).with_context(|| name.clone())?;
     driven.check(converted.inputs(), options.scheme).with_context(|| name.clone())?;
     let held_out = options.held_out.as_ref().map(|path| {
         let input = Input { input: path.clone(), ..input.clone() };
@@ -514,10 +519,10 @@ const READ_ERROR: f64 = 0.02;
 /// conversion was tuned on, then for the held-out recording.
 fn report(brought: &Brought) {
     let Brought { network, tuned, held_out, costs, reading, reading_error } = brought;
-    network.notes().iter().for_each(|note| eprintln!("{note}"));
+    network.notes().iter().for_each(|note| say!("{note}"));
     let doubt = |is_far| if is_far { ": --as, --reset or --dt may be others" } else { "" };
     if let Some(reading) = reading {
-        eprintln!(
+        say!(
             "in double precision, as the file and the options say, outputs fire as they did in training in {:.1} % of the \
              steps in which any fires{}",
             100.0 * reading,
@@ -525,21 +530,21 @@ fn report(brought: &Brought) {
         );
     }
     if let Some(error) = reading_error {
-        eprintln!(
+        say!(
             "in double precision, as the file and the options say, potentials of outputs are {:.1} % off those of \
              training (root mean squares){}",
             100.0 * error,
             doubt(*error > READ_ERROR)
         );
     }
-    eprintln!("layer: neurons, weights clipped; spikes, on the chip, distance");
+    say!("layer: neurons, weights clipped; spikes, on the chip, distance");
     tell(tuned, &**network);
     match held_out {
         Some(held_out) => {
-            eprintln!("held out:");
+            say!("held out:");
             tell(held_out, &**network);
         }
-        None => eprintln!(
+        None => say!(
             "the figures are those of the recording that the network is tuned on: --held-out shows another"
         ),
     }
@@ -549,7 +554,7 @@ fn report(brought: &Brought) {
         let mut costs = costs.clone();
         costs.sort_by(|(_, one), (_, other)| one.total_cmp(other));
         let costs: Vec<String> = costs.iter().map(alone).collect();
-        eprintln!(
+        say!(
             "warning: step by step the chip is another network than the trained one; {}",
             if costs.is_empty() {
                 "compare the spikes of each layer".to_owned()
@@ -565,41 +570,50 @@ fn report(brought: &Brought) {
 
 fn tell(figures: &Figures, network: &dyn OnChip) {
     for layer in &figures.layers {
-        eprintln!(
+        say!(
             "{}: {}, {}; {}, {}, {:.1}",
-            layer.name, layer.neurons, layer.clipped, layer.spikes, layer.on_chip, layer.distance
+            layer.name,
+            layer.neurons,
+            layer.clipped,
+            layer.spikes,
+            layer.on_chip,
+            layer.distance
         );
     }
     if let Some(outputs) = &figures.potentials {
-        eprintln!(
+        say!(
             "{}: {} outputs, {} weights clipped; potentials of {:.4}, on the chip {:.4} off (root mean squares)",
-            outputs.name, outputs.outputs, outputs.clipped, outputs.size, outputs.error
+            outputs.name,
+            outputs.outputs,
+            outputs.clipped,
+            outputs.size,
+            outputs.error
         );
     }
     let &Figures { steps, agreeing, active, windows, windows_agreeing, .. } = figures;
     if let Some(agreement) = figures.agreement() {
-        eprintln!(
+        say!(
             "outputs agree in {:.1} % of {steps} steps, in {:.1} % of the {active} in which any {}",
             100.0 * agreeing as f64 / steps as f64,
             100.0 * agreement,
             if figures.potentials.is_some() { "has a potential" } else { "fires" }
         );
-        eprintln!(
+        say!(
             "the output that {} is the same in {:.1} % of {windows} times {WINDOW} steps",
             if figures.potentials.is_some() { "is highest most often" } else { "fires most" },
             100.0 * windows_agreeing as f64 / windows as f64
         );
     } else if figures.potentials.is_none() {
-        eprintln!(
+        say!(
             "warning: no output fires, neither in double precision nor on the chip: there is nothing to compare"
         );
     }
-    eprintln!("{}", network.effort(figures.mean_clocks, figures.most_clocks));
+    say!("{}", network.effort(figures.mean_clocks, figures.most_clocks));
     if figures.lost > 0 {
-        eprintln!("warning: {} spikes were lost: {}", figures.lost, network.loss());
+        say!("warning: {} spikes were lost: {}", figures.lost, network.loss());
     }
     if figures.clipped > 0 {
-        eprintln!(
+        say!(
             "warning: in {} steps an output reached the end of its 16 bits; in flight, `run` returns `Clipped` then",
             figures.clipped
         );

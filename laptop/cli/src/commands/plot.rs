@@ -75,10 +75,10 @@ pub(crate) fn run(options: &Plot) -> Result<()> {
     }
     tell(&read.notes);
     for words in &refused {
-        eprintln!("not drawn: {words}");
+        say!("not drawn: {words}");
     }
     for note in &notes {
-        eprintln!("{note}");
+        say!("{note}");
     }
     let mut picture = read.picture;
     picture.unit = options.unit.clone().or(picture.unit);

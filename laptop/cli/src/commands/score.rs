@@ -2,7 +2,7 @@
 //! signal.
 
 use crate::inputs::{LogOptions, ManyChannels, as_file, read_flight};
-use crate::options::Coding;
+use crate::options::{Coding, answer};
 use crate::report::{Counts, Log, Report};
 use crate::words::{self, of_lab, tell_of};
 use anyhow::{Result, bail};
@@ -10,12 +10,11 @@ use catalogue::run::{Asked, SampleType};
 use clap::Args;
 use lab::dataset::Found;
 use lab::flight::Flight;
-use lab::output::Output;
 use lab::scheme::Scheme;
 use lab::score::{Figures, Scored, score, score_flight};
 use lab::slope::Slope;
 use serde::Serialize;
-use std::io::Write;
+use std::fmt::Write;
 use std::path::PathBuf;
 
 /// Score one scheme on one channel of each log, or all schemes if `--scheme` is not given.
@@ -295,7 +294,7 @@ fn print_table(logs: &[(&str, &[Outcome])], summary: &Summary, is_list: bool) ->
         0 => String::new(),
         width => format!("| {name:width$} "),
     };
-    let mut output = Output::to(None)?;
+    let mut output = String::new();
     writeln!(
         output,
         "{}| scheme              |  spikes | efficiency % |       RMSE |  SNR dB | spikes/s | parameters |",
@@ -334,5 +333,5 @@ fn print_table(logs: &[(&str, &[Outcome])], summary: &Summary, is_list: bool) ->
             first(&label(total))
         )?;
     }
-    Ok(output.finish()?)
+    Ok(answer(words::page(&output))?)
 }

@@ -11,7 +11,7 @@ use catalogue::run::{Asked, SampleType, Worded};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use lab::dataset::Found;
-use lab::flight::{TunedChannel, of_rows};
+use lab::flight::{TunedChannel, of_rows, visible};
 use lab::input::{InputOptions, Unnamed};
 use lab::output::Output;
 use lab::plot::draw_fronts;
@@ -192,7 +192,7 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
     let tell = |Progress { done, total, words }: &Progress| {
         let time = options.seconds.map_or(0.0, |most| start.elapsed().as_secs_f64() / most);
         bar.set_position(position(*done as f64 / *total as f64, time));
-        bar.set_message(format!("{done} of {total} settings, {words}"));
+        bar.set_message(format!("{done} of {total} settings, {}", visible(words)));
     };
     let watch = Watch { is_stopped: &|| stop.is_due(), tell: &tell };
     let all = tune(&request, &watch)?;
@@ -200,10 +200,10 @@ pub(crate) fn run(options: &Tune) -> Result<()> {
     let (mut panels, mut emitted, mut results) = (Vec::new(), String::new(), Vec::new());
     for Tuned { channel, rows, curves, missed, notes } in all {
         for words in notes {
-            eprintln!("{words}");
+            say!("{words}");
         }
         for words in missed {
-            eprintln!("{}: {}", channel.name, words.spelled(option));
+            say!("{}: {}", channel.name, words.spelled(option));
         }
         if rows.is_empty() && curves.is_empty() {
             bail!("{}: of the settings tried none keeps to all limits", channel.name);
@@ -367,7 +367,7 @@ impl Tune {
         let is_to_stdout =
             self.emit.is_some() && self.output.as_deref().is_none_or(|path| path == Path::new("-"));
         for (cut, rows) in results {
-            let text = texts(cut, rows, &self.core, self.below);
+            let text = words::page(&texts(cut, rows, &self.core, self.below));
             if is_to_stdout {
                 eprint!("{text}");
             } else {

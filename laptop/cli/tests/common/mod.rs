@@ -68,11 +68,11 @@ pub fn spikewire_bytes(arguments: &str, input: &[u8]) -> RanBytes {
         });
         child.wait_with_output().unwrap()
     });
-    RanBytes {
-        status: done.status.code().unwrap(),
-        output: done.stdout,
-        stderr: String::from_utf8(done.stderr).unwrap(),
-    }
+    let stderr = String::from_utf8(done.stderr).unwrap();
+    // No name in a message controls the terminal or turns a line around.
+    let controls = |letter: char| letter != '\n' && letter.is_control() || letter == '\u{202e}';
+    assert!(!stderr.contains(controls), "spikewire {arguments}: {stderr:?}");
+    RanBytes { status: done.status.code().unwrap(), output: done.stdout, stderr }
 }
 
 /// Runs `spikewire` with bytes as input and output. The test fails if the exit status is not 0.

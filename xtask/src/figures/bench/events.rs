@@ -170,8 +170,8 @@ pub fn csv(events: &[Event]) -> String {
     text
 }
 
-/// The subjects on the page, with their names there.
-const NAMES: [(&str, &str); 12] = [
+/// The subjects on the page, with their names there; the file has all.
+const NAMES: [(&str, &str); 10] = [
     ("queue", "queue: push, pop"),
     ("queue-lock-free", "queue, lock-free: push, pop"),
     ("raw", "raw: tick, address, sign"),
@@ -180,9 +180,7 @@ const NAMES: [(&str, &str); 12] = [
     ("edvs-e1", "eDVS E1"),
     ("event-stream", "Event Stream"),
     ("evt2", "EVT2"),
-    ("eieio", "EIEIO, a datagram a sample"),
     ("tinyodin", "tinyODIN, word and handshake"),
-    ("akd1500-dense", "AKD1500, dense layer"),
     ("xylo", "Xylo, counts of 10 ms"),
 ];
 
@@ -236,12 +234,8 @@ fn six_channels(events: &[Event]) -> Result<String> {
     Ok(format!("{text}\n{}", in_a_sentence(events)?))
 }
 
-/// The ways from six samples to frames.
-const PATHS: [(&str, &str); 3] = [
-    ("path-8khz", "SF, 8 kHz"),
-    ("path-send-on-delta-8khz", "send-on-delta, 8 kHz"),
-    ("path-200hz", "SF, 200 Hz"),
-];
+/// The ways from six samples to frames that the page has.
+const PATHS: [(&str, &str); 2] = [("path-8khz", "SF, 8 kHz"), ("path-200hz", "SF, 200 Hz")];
 
 /// Describes in a few sentences how much of the core six channels take.
 pub fn in_a_sentence(events: &[Event]) -> Result<String> {
@@ -254,14 +248,10 @@ pub fn in_a_sentence(events: &[Event]) -> Result<String> {
         ))
     });
     let (floats, counts) = (floats?, counts?);
-    let slow = find(events, PROMISED, "path-200hz", "all", "f32")?;
     Ok(format!(
         "Six channels of SF at 8 kHz, from samples to frames, on a Cortex-M4F at 168 MHz: a sample set in\n\
          {floats}. {counts}.\n\
-         Both are measured on the recorded flight, linearly interpolated to 8 kHz; 8 % of the sample sets produce a spike.\n\
-         As recorded, at 200 Hz with two spikes a sample set, `f32` takes {:.1} instructions and {} cycles.\n",
-        slow.instructions_mean,
-        figures::cell(slow.cycles_mean),
+         Both are measured on the recorded flight, linearly interpolated to 8 kHz; 8 % of the sample sets produce a spike.\n"
     ))
 }
 
