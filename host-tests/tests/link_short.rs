@@ -800,6 +800,31 @@ fn short_frames_reach_half_of_all_counts_ahead_and_an_eighth_back() {
     }
 }
 
+/// A master that clocks its bus between frames reads what an idle line has: nothing is missing.
+#[test]
+fn bytes_of_an_idle_line_leave_values_exact() {
+    for idle in [0x00, 0xFF] {
+        let mut line = Line::new(4);
+        let mut receiver = Receiver::<_, 2, 0>::new(&STEP);
+        let keyframe = Keyframe::new(Tick::from_micros(line.now), 1, 0_i16);
+        let mut frames = vec![line.frame(&[keyframe.into()])];
+        frames.extend((0..20).map(|_| line.frame(&[line.step(Polarity::Up)])));
+        for frame in frames {
+            for bytes in [&frame[..], &[idle; 300]] {
+                let mut input = bytes;
+                while let Some(received) = line.reader.next_frame(&mut input) {
+                    receiver.apply(&received, |_, _, _| ());
+                }
+                while let Some(received) = line.reader.next_after_silence() {
+                    receiver.apply(&received, |_, _, _| ());
+                }
+                assert!(receiver.exact(1).is_some(), "{idle:#x}");
+            }
+        }
+        assert!(!line.reader.is_interrupted() && line.reader.skipped() == 21 * 300);
+    }
+}
+
 /// Frames of another session, time, coding or fingerprint fail their check.
 #[test]
 fn a_short_frame_of_another_sender_is_none() {

@@ -64,7 +64,7 @@ impl Passed {
 pub(crate) fn pass(input: &InputOptions, mut take: impl FnMut(&Piece)) -> Result<Passed> {
     input.single("this command")?;
     let (mut source, mut chunk) = (input.open()?, Chunk::default());
-    input.check_single(&*source, "this command")?;
+    InputOptions::check_single(&*source, "this command")?;
     source.next(&mut chunk)?;
     let mut clock = Clock::new(&chunk.times, input.rate, input.gap);
     let is_timed = !chunk.times.is_empty();

@@ -83,7 +83,7 @@ async function showBeginning([file, ...others], wanted, isWanted) {
     // A table's last line would be cut; a log's last message is cut anyway.
     const part = new File([bytes.subarray(0, bytes.lastIndexOf(10) + 1 || bytes.length)], file.name), { table } = state;
     const answer = await library.ask({ ...openRequest({ files: [part], table }), accept_cut: true }, { files: [part] });
-    const opened = { ...answer, files: [part], table }, asked = channelOf(answer.topics, wanted);
+    const opened = { ...answer, files: [part], table }, asked = channelOf(answer, wanted);
     const recording = await read(library, { ...loadRequest(opened, asked), accept_cut: true }, { opened, asked });
     if (!isWanted()) return library.stop();
     return change({ recording: Object.assign(recording, { isBeginning: true, before: state.recording }) });

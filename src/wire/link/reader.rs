@@ -22,8 +22,8 @@ pub struct Received<'a> {
     /// Whether it is the first frame of the sender's session that arrived, also after 2²⁴ lost frames or more; or one of
     /// whose number or time the session's earlier frames say that it is used again.
     pub is_start: bool,
-    /// Whether this stands for bytes of which no frame can be read yet: a frame that is damaged, a short one that goes on
-    /// from one that is missing for too long, or bytes behind those. Its frame is empty, and has the number and time of the
+    /// Whether this stands for bytes of which no frame can be read yet, other than those of an idle line (0 and 0xFF): a
+    /// frame that is damaged, a short one that goes on from one that is missing for too long, or bytes behind those. Its frame is empty, and has the number and time of the
     /// one before. It comes once until the next frame, as soon as the bytes at hand end, so that no value is called exact
     /// meanwhile.
     pub is_unread: bool,
@@ -67,8 +67,8 @@ pub struct Reader<const N: usize> {
     sessions: [Run; 4],
     /// The frame delivered last, from which short ones go on.
     known: Option<Known>,
-    /// Whether bytes came since then that belong to no frame, whether some began as a short frame does, and whether the
-    /// receiver heard of it.
+    /// Whether bytes came since then that belong to no frame and are not those of an idle line, whether some began as a
+    /// short frame does, and whether the receiver heard of it.
     is_interrupted: bool,
     has_unread_short: bool,
     has_reported: bool,
@@ -293,7 +293,7 @@ impl<const N: usize> Reader<N> {
     }
 
     /// Whether bytes came since the last frame that belong to none: a frame was damaged, or short frames wait for a full
-    /// one, which says what they leave out.
+    /// one, which says what they leave out. Zeros and 0xFF do not count: an idle line may have them between frames.
     pub const fn is_interrupted(&self) -> bool {
         self.is_interrupted
     }
@@ -376,13 +376,14 @@ impl<const N: usize> Reader<N> {
             LinkError::Version { found } => self.other_version = Some(found),
             _ => {}
         }
-        self.is_interrupted = true;
         let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
         self.has_unread_short |= bytes.first().is_some_and(|&first| short::begins_with(first));
         let is_known = self.known.is_some();
         let begins = |&byte: &u8| byte == MAGIC || is_known && short::begins_with(byte);
         let next = bytes.iter().skip(1).position(begins);
         let skipped = next.map_or(bytes.len(), |next| next.wrapping_add(1));
+        let is_idle = |&byte: &u8| byte == 0 || byte == u8::MAX;
+        self.is_interrupted |= !bytes.iter().take(skipped).all(is_idle);
         self.start = self.start.wrapping_add(skipped);
         self.skipped = self.skipped.saturating_add(skipped as u32);
     }

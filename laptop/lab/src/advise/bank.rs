@@ -326,6 +326,15 @@ impl BankChannel {
     }
 }
 
+/// Returns the channels whose unit is known. The others are among the open questions.
+fn of_known_unit(mut names: Vec<String>, heard: &[(&Advice, &Recording)]) -> Vec<String> {
+    names.retain(|name| {
+        let is_unknown = |advice: &Advice| advice.inertial.is_none() && advice.look.name == *name;
+        !heard.iter().any(|(advice, _)| is_unknown(advice))
+    });
+    names
+}
+
 /// Makes a bank: one scheme, with settings for all channels. Returns `Ok(Ok(None))` if no settings of the scheme suit a
 /// channel, and `Ok(Err(reason))` if the channels cannot share the scheme.
 fn bank(
@@ -410,10 +419,6 @@ fn bank(
     };
     let Judged { trials, encoded, channels, coarser } =
         judged(request, scheme, heard, &flight, held_out)?;
-    // Channels whose unit is unknown are among the open questions.
-    let unknown = |name: &String| {
-        heard.iter().any(|(own, _)| own.inertial.is_none() && own.look.name == *name)
-    };
     let lacks_filter = flown.is_some_and(|own| own.filter().is_some()) && flight.filter.is_none();
     let is_as_flown = flown.is_some_and(|flown| is_as_flown(scheme, heard, &flight, flown));
     let samples = heard.iter().map(|(_, own)| own.values.len()).min().unwrap_or_default() as u64;
@@ -433,7 +438,7 @@ fn bank(
         flown_minutes: is_as_flown.then(|| flown::minutes(scheme.name(), Some(rate))).flatten(),
         lost_in: flown.filter(|_| is_as_flown).map_or(&[], Flown::lost_in),
         flew_otherwise: flown.is_some() && !is_as_flown,
-        coarser: coarser.into_iter().filter(|own| in_loop && !unknown(own)).collect(),
+        coarser: if in_loop { of_known_unit(coarser, heard) } else { Vec::new() },
         is_cut_short,
         channels,
         flight,

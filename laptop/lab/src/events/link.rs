@@ -25,8 +25,6 @@ pub trait Values {
 /// Reads link frames as events, or as decoded values.
 pub struct LinkReader<'a> {
     reader: Reader<MAX_FRAME>,
-    /// Number of zeros that `finish` appended to the input. They do not count as skipped bytes.
-    padding: u64,
     values: Option<Box<dyn Values + 'a>>,
     tally: LinkTally,
 }
@@ -34,7 +32,7 @@ pub struct LinkReader<'a> {
 impl<'a> LinkReader<'a> {
     /// Makes a reader that decodes with `values`, or that reads events if `values` is `None`.
     pub fn new(values: Option<Box<dyn Values + 'a>>) -> Self {
-        Self { reader: Reader::new(), padding: 0, values, tally: LinkTally::default() }
+        Self { reader: Reader::new(), values, tally: LinkTally::default() }
     }
 }
 
@@ -47,11 +45,13 @@ impl EventReader for LinkReader<'_> {
         }
     }
 
-    /// Appends zeros to the input. Without these zeros, a frame with a damaged length field would hold back the frames
-    /// after it, because the reader would wait for the longest possible frame.
+    /// Reads the frames that wait behind one whose damaged length announces more bytes than there are.
     fn finish(&mut self, items: &mut Vec<Item>) -> Result<()> {
-        self.read(&[0; MAX_FRAME], items)?;
-        self.padding = MAX_FRAME as u64;
+        loop {
+            let is_first = self.reader.frames() == 0;
+            let Some(received) = self.reader.next_after_silence() else { break };
+            take(&received, is_first, &mut self.tally, self.values.as_deref_mut(), items);
+        }
         if let Some(values) = &mut self.values {
             values.finish(items);
         }
@@ -71,8 +71,7 @@ impl EventReader for LinkReader<'_> {
         if let Some(values) = &self.values {
             values.count(&mut link);
         }
-        let skipped = u64::from(reader.skipped()).saturating_sub(self.padding);
-        Tally { skipped, link: Some(link), ..Tally::default() }
+        Tally { skipped: reader.skipped().into(), link: Some(link), ..Tally::default() }
     }
 }
 

@@ -35,6 +35,10 @@ enum Quantity {
 const FLEW: [&str; 3] = ["sensor_combined", "vehicle_angular_velocity", "highres_imu"];
 
 /// Rank of a topic. The fields are compared in their order.
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a question, and the order of the fields is the rule"
+)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Rank {
     has_both_sensors: bool,
@@ -117,9 +121,9 @@ pub fn group(topic: &str, fields: &[String], field: &str) -> Option<usize> {
 /// Returns the field of a topic that one looks at first: the first axis of its inertial sensor, or else a signal.
 pub fn first_field<'a>(topic: &str, fields: &'a [String]) -> Option<&'a str> {
     let axes = axes(topic, fields);
-    let axis = fields.iter().find(|field| axes.first() == Some(field));
+    let first_axis = fields.iter().find(|field| axes.first() == Some(field));
     let signal = fields.iter().find(|field| !is_other(&field.to_lowercase()));
-    axis.or(signal).or(fields.first()).map(String::as_str)
+    first_axis.or(signal).or(fields.first()).map(String::as_str)
 }
 
 fn axes_of(topic: &str, fields: &[String], wanted: Quantity) -> Vec<String> {

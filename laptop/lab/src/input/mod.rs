@@ -363,7 +363,7 @@ impl InputOptions {
     ///
     /// # Errors
     /// Returns an error if the source has several channels.
-    pub(crate) fn check_single(&self, source: &dyn Source, command: &str) -> Result<()> {
+    pub(crate) fn check_single(source: &dyn Source, command: &str) -> Result<()> {
         match source.names().len() {
             0 | 1 => Ok(()),
             channels => {
