@@ -144,8 +144,9 @@ fn advice_on_a_log_needs_no_channels() {
     assert_eq!(names[..2], ["gyro_rad[0]", "gyro_rad[1]"]);
     assert_eq!(names.len(), 6);
     assert!(report["notes"].to_string().contains("of sensor_combined"), "{}", report["notes"]);
-    let table: String = (0..200).map(|row| format!("{row},{}\n", row * row % 17)).collect();
-    let ran = good("advise - --evaluations 2 --json --rate 100", &format!("x,y\n{table}"));
+    let rows: Vec<String> = (0..200).map(|row| format!("{row},{}", row * row % 17)).collect();
+    let table = format!("x,y\n{}\n", rows.join("\n"));
+    let ran = good("advise - --evaluations 2 --json --rate 100", &table);
     assert_eq!(ran.log()["channels"].as_array().unwrap().len(), 2);
 }
 
@@ -188,12 +189,9 @@ fn channels_are_named_in_one_way_for_tables_and_logs() {
     );
     let (_directory, bag) = file("a.bag", Kind::Bag.log("none"));
     let rate = ran!("encode {SF} --topic imu --field rate {bag}").output;
-    for names in
-        ["--channels rate", "--channels imu.rate", "--channels /imu.rate", "--channels */rate"]
-    {
-        let names = names.replace("*/rate", "*imu.rate");
-        let named = ran!("encode {SF} {names} {bag}").output;
-        assert_eq!(events(&named), events(&rate), "{names}");
+    for channels in ["rate", "imu.rate", "/imu.rate", "*imu.rate"] {
+        let encoded = ran!("encode {SF} --channels {channels} {bag}").output;
+        assert_eq!(events(&encoded), events(&rate), "{channels}");
     }
 }
 

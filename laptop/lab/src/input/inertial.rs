@@ -338,9 +338,10 @@ mod tests {
     fn xyz(names: &str) -> Vec<String> {
         let mut all = Vec::new();
         for name in names.split(',').filter(|name| !name.is_empty()) {
-            match name.contains('*') {
-                true => all.extend(["x", "y", "z"].map(|axis| name.replace('*', axis))),
-                false => all.push(name.to_owned()),
+            if name.contains('*') {
+                all.extend(["x", "y", "z"].map(|axis| name.replace('*', axis)));
+            } else {
+                all.push(name.to_owned());
             }
         }
         all
