@@ -856,20 +856,20 @@ fn a_short_frame_of_another_sender_is_none() {
         ("period", sender(1, 0, Coding::for_channels(2, 1_001), Some(7))),
     ] {
         let mut reader = Reader::<MAX_FRAME>::new();
-        let stream =
-            [near[..10].concat(), other[10..].concat(), near[29].clone(), vec![0; 300]].concat();
-        let mut input = &stream[..];
-        let mut read = 0;
-        let mut unread = 0;
-        while let Some(received) = reader.next_frame(&mut input) {
-            if received.is_unread {
-                assert!(received.is_after_break());
-                unread += 1;
-                continue;
+        let others = [near[..10].concat(), other[10..].concat()].concat();
+        let (mut read, mut unread) = (0, 0);
+        for bytes in [others, near[29].clone(), vec![0; 300]] {
+            let mut input = &bytes[..];
+            while let Some(received) = reader.next_frame(&mut input) {
+                if received.is_unread {
+                    assert!(received.is_after_break());
+                    unread += 1;
+                    continue;
+                }
+                read += 1;
+                let lost = received.gap.map_or(0, |gap| gap.lost_frames);
+                assert_eq!(lost, if read == 11 { 19 } else { 0 }, "{what}");
             }
-            read += 1;
-            let lost = received.gap.map_or(0, |gap| gap.lost_frames);
-            assert_eq!(lost, if read == 11 { 19 } else { 0 }, "{what}");
         }
         assert_eq!((read, unread), (11, 1), "another {what}");
     }

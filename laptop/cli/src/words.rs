@@ -8,11 +8,10 @@ use lab::flight::visible;
 use lab::input::LogKind;
 use std::io;
 
-/// Prints a message on standard error, on one line. Letters of names that would control the terminal or turn the line
-/// around are escaped.
+/// Prints a message on standard error. Letters of names that would control the terminal or turn a line around are escaped.
 macro_rules! say {
     ($($message:tt)*) => {
-        eprintln!("{}", lab::flight::visible(&format!($($message)*)))
+        eprintln!("{}", crate::words::page(&format!($($message)*)))
     };
 }
 

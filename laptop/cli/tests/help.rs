@@ -4,9 +4,9 @@ mod common;
 
 use common::{good, ran};
 
-const COMMANDS: [&str; 16] = [
-    "advise", "score", "tune", "encode", "decode", "info", "plot", "dataset", "emit", "listen",
-    "capture", "convert", "frames", "network", "signal", "bench",
+const COMMANDS: [&str; 17] = [
+    "advise", "score", "tune", "encode", "decode", "info", "samples", "plot", "dataset", "emit",
+    "listen", "capture", "convert", "frames", "network", "signal", "bench",
 ];
 
 #[test]
