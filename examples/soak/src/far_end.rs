@@ -28,6 +28,8 @@ pub struct FarEnd {
     watch: Reader<MAX_FRAME>,
     /// The last frame that was delivered.
     delivered: Option<Sent>,
+    /// How many were.
+    pub frames: u32,
     pub told: Told,
 }
 
@@ -50,6 +52,7 @@ impl FarEnd {
             count: 0,
             watch: Reader::new(),
             delivered: None,
+            frames: 0,
             told: Told::default(),
         }
     }
@@ -100,6 +103,7 @@ impl FarEnd {
     pub fn hear(&mut self, mut bytes: &[u8]) -> Result<(), &'static str> {
         while let Some(received) = self.reader.next_frame(&mut bytes) {
             check(&self.sent, &mut self.delivered, &received, &mut self.told.starts)?;
+            self.frames += u32::from(!received.is_unread);
             self.receiver.apply(&received, |_, _, _| ());
         }
         Ok(())
@@ -109,6 +113,7 @@ impl FarEnd {
     pub fn idle(&mut self) -> Result<(), &'static str> {
         while let Some(received) = self.reader.next_after_silence() {
             check(&self.sent, &mut self.delivered, &received, &mut self.told.starts)?;
+            self.frames += u32::from(!received.is_unread);
             self.receiver.apply(&received, |_, _, _| ());
         }
         Ok(())

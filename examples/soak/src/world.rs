@@ -25,6 +25,8 @@ const SPELL: u32 = 233;
 const CALM: u32 = 100;
 /// Samples until a far end that starts again has the fingerprint of the sender: 2¹⁹ µs, and the next keyframe.
 const FINGERPRINT: u32 = (1 << 19) / PERIOD + KEYFRAME_EVERY;
+/// Samples without a frame, a second of them, after which a far end waits for a full frame, which has the fingerprint.
+const LONGEST_GAP: u32 = 1_000_000 / PERIOD;
 /// One of so many turns has a brown-out.
 const BROWN_OUT: u32 = 16;
 
@@ -34,6 +36,9 @@ pub struct World {
     line: Line,
     far: FarEnd,
     flown: u32,
+    /// Frames that were delivered, and the sample at which the last one was.
+    frames: u32,
+    heard: u32,
     at: usize,
     /// What earlier starts of the sender lost and rejected.
     lost: u32,
@@ -85,6 +90,8 @@ impl World {
             line: Line::new(),
             far: FarEnd::new(),
             flown: 0,
+            frames: 0,
+            heard: 0,
             at: 0,
             lost: 0,
             rejected: 0,
@@ -108,7 +115,10 @@ impl World {
             for _ in 0..SPELL {
                 self.sample(Some(fault), &mut tally)?;
             }
-            let learns = if fault == Fault::FarEndOut { FINGERPRINT } else { 0 };
+            // The first frame of the calm comes with its first keyframe, at the latest.
+            let gap = self.flown - self.heard + KEYFRAME_EVERY;
+            let must_learn = fault == Fault::FarEndOut || gap > LONGEST_GAP;
+            let learns = if must_learn { FINGERPRINT } else { 0 };
             self.calm(learns, &mut tally)?;
         }
         let told = self.far.told();
@@ -176,7 +186,11 @@ impl World {
         if hangs || !self.flown.is_multiple_of(TURN) {
             return Ok(false);
         }
-        self.turn(fault, tally)
+        let is_exact = self.turn(fault, tally)?;
+        if self.far.frames != self.frames {
+            (self.frames, self.heard) = (self.far.frames, self.flown);
+        }
+        Ok(is_exact)
     }
 
     /// The next sample of the recording, over and over.
