@@ -729,9 +729,10 @@ impl<'a, P: Storable> World<'a, P> {
             }
             delivered => {
                 assert!(received.is_start && gap == 0);
-                let may_begin_again = self.faults.iter().any(|fault| matches!(fault, FarLate));
+                let may_begin_again =
+                    self.faults.iter().any(|fault| matches!(fault, Late | FarLate));
                 let is_other = delivered.map(|last| last.0) != Some(sent.session);
-                assert!(is_other || may_begin_again);
+                assert!(is_other || may_begin_again, "{:?}", self.faults);
                 self.tally.notice("starts", u64::from(self.tally.spells > 0));
             }
         }

@@ -322,7 +322,11 @@ fn axis(field: &str) -> Option<usize> {
         'p' if *last == "p" => Some(0),
         'q' if *last == "q" => Some(1),
         'r' if *last == "r" => Some(2),
-        _ => None,
+        // A remark may stand behind the axis, as in `a_x, raw`.
+        _ => {
+            let axis = words.iter().rfind(|word| is_axis_letter(word))?;
+            ["x", "y", "z"].iter().position(|letter| letter == axis)
+        }
     }
 }
 
@@ -356,6 +360,8 @@ mod tests {
         let fields = xyz("a*,g*");
         assert_eq!(super::group("", &fields, "gz"), rate);
         assert_eq!(super::group("sensor_accel", &xyz("*"), "z"), up);
+        let remarks = ["x", "y", "z"].map(|axis| format!("a_RS_S_{axis}, \"raw\" [m s^-2]"));
+        assert_eq!(super::group("", &remarks, &remarks[2]), up);
         assert_eq!(super::first_field("", &xyz("timestamp,alpha")), Some("alpha"));
         assert_eq!(super::first_field("", &xyz("alpha,gyro_*")), Some("gyro_x"));
     }
