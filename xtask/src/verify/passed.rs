@@ -20,11 +20,12 @@ use std::{
 };
 
 /// Variables that make a step do less, or something else. A run with one of them is not recorded.
-const NARROW: [&str; 8] = [
+const NARROW: [&str; 9] = [
     "BOARD",
     "CASES_TIMES",
     "FUZZ_SECONDS",
     "FUZZ_TARGET",
+    "HAL",
     "MUTANTS_IN",
     "MUTANTS_SECONDS",
     "RUSTFLAGS",
