@@ -4,12 +4,15 @@ use crate::common::output;
 use crate::products::new_firmware;
 use crate::programs::host;
 use anyhow::{Context, Result, ensure};
+use spikewire_flight::{Flight, STANDARD_GRAVITY};
 use std::{fmt::Write, fs, path::Path};
 
-/// Full scales that the firmware of the templates configures: 2000 °/s and 16 g.
-const COUNTS: f64 = 32_768.0;
-const RATE: f64 = 2000.0;
-const ACCELERATION: f64 = 16.0 * 9.806_65;
+/// The size of a sensor's count on an axis, in rad/s or m/s², with the full scales that the firmware of the templates
+/// configures: 2000 °/s and 16 g.
+pub fn count_size(axis: usize) -> f64 {
+    let full = if axis < 3 { 2000_f64.to_radians() } else { 16.0 * STANDARD_GRAVITY };
+    full / 32_768.0
+}
 
 /// Samples with their times in s, from the first one on: rates in rad/s about x, y, z, then accelerations in m/s² along them.
 pub struct Recording(Vec<(f64, [f64; 6])>);
@@ -75,8 +78,20 @@ impl Recording {
         let until = self.0.partition_point(|row| (row.0 * 1e6).round() as i64 <= micros);
         let (_, sample) = self.0[until.saturating_sub(1)];
         core::array::from_fn(|axis| {
-            let full = if axis < 3 { RATE.to_radians() } else { ACCELERATION };
-            (sample[axis] / full * COUNTS).round().clamp(-COUNTS, COUNTS - 1.0) as i64
+            let count = (sample[axis] / count_size(axis)).round() as i64;
+            count.clamp(i16::MIN.into(), i16::MAX.into())
         })
+    }
+
+    /// The samples behind the flight's filter, with their times in µs.
+    pub fn filtered(&self, flight: &Flight) -> Result<Vec<(i64, [f64; 6])>> {
+        let mut filters = flight.filters()?;
+        let row = |&(time, mut sample): &(f64, [f64; 6])| {
+            for (value, filter) in sample.iter_mut().zip(&mut filters) {
+                *value = filter(*value);
+            }
+            ((time * 1e6) as i64, sample)
+        };
+        Ok(self.0.iter().map(row).collect())
     }
 }

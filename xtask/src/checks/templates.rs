@@ -2,22 +2,23 @@
 //! part's emulator, well and with every fault of its sensor.
 
 use crate::checks::emulator::{self, Run};
-use crate::checks::recording::Recording;
+use crate::checks::recording::{Recording, count_size};
 use crate::common::{command, lint, output, paths, run};
 use crate::products::new_firmware::{self, Origin};
 use crate::products::templates::{TEMPLATES, Template};
 use crate::programs::host;
 use crate::setup::toolchain::cargo_for;
 use anyhow::{Context, Result, ensure};
+use spikewire_flight::Flight;
 use std::{
+    collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
 };
 
-/// How far a value may be from the sensor's sample, in thresholds: one by which the code may lag, one for the noise and the
-/// time of the sample, and three for the vibration that the file's filter takes out in this part of the log (4 in all were
-/// measured). An axis, a sign or a scale that is wrong moves the acceleration of gravity by five or more.
-const MOST_DISTANCE: f64 = 5.0;
+/// Largest distance of a value from the filtered sample, in thresholds: the code may lag by one, and one is for the time of
+/// the sample.
+const MOST_DISTANCE: f64 = 2.0;
 const PAGE: &str = "docs/firmware.md";
 const HEADING: &str = "## From a log to exact values";
 /// The repository's flight, as `spikewire advise` wrote it.
@@ -141,8 +142,9 @@ fn well(template: &Template, part: &str, image: &Path, flight: &Path) -> Result<
         let (at, counts) = sample.split_first().context("a sample has a time")?;
         ensure!(counts == recording.counts(*at), "at {at} µs the sensor had {counts:?}");
     }
-    let distance = samples(&directory)?.distance(&values, &thresholds(flight)?);
-    ensure!(distance <= MOST_DISTANCE, "a value is {distance:.2} thresholds from the sensor's");
+    let samples = Samples(recording.filtered(&Flight::read(flight)?)?);
+    let distance = samples.distance(&last_of_samples(&values), &thresholds(flight)?);
+    ensure!(distance <= MOST_DISTANCE, "a value is {distance:.2} thresholds from the log's");
     Ok(values.len())
 }
 
@@ -208,16 +210,23 @@ fn listened(flight: &Path, directory: &Path) -> Result<Vec<Value>> {
     table.lines().skip(1).filter(|line| !line.starts_with('#')).map(value).collect()
 }
 
-/// The sensor's samples, in SI units: rates, then accelerations.
+/// The last value of each sample of a channel. The spikes of one sample lead to it step by step.
+fn last_of_samples(values: &[Value]) -> Vec<&Value> {
+    let mut last = BTreeMap::new();
+    for value in values {
+        last.insert((value.tick, value.channel), value);
+    }
+    last.into_values().collect()
+}
+
+/// Samples in SI units, with their times in µs: rates, then accelerations.
 struct Samples(Vec<(i64, [f64; 6])>);
 
 fn samples(directory: &Path) -> Result<Samples> {
-    let (rate, acceleration) = (2000_f64.to_radians() / 32_768.0, 16.0 * 9.806_65 / 32_768.0);
     let sample = |line: &str| {
         let counts = line.split(',').map(str::parse).collect::<Result<Vec<i64>, _>>()?;
         let [at, counts @ ..] = &counts[..] else { anyhow::bail!("{line}") };
-        let scale = |axis: usize| if axis < 3 { rate } else { acceleration };
-        let value = |axis: usize| Some(*counts.get(axis)? as f64 * scale(axis));
+        let value = |axis: usize| Some(*counts.get(axis)? as f64 * count_size(axis));
         let values = [0, 1, 2, 3, 4, 5].map(|axis| value(axis).unwrap_or_default());
         Ok((*at, values))
     };
@@ -226,11 +235,11 @@ fn samples(directory: &Path) -> Result<Samples> {
 }
 
 impl Samples {
-    /// Returns the largest distance of the values from the sensor's samples, in thresholds, at the best offset of the
+    /// Returns the largest distance of the values from the samples, in thresholds, at the best offset of the
     /// flight's clock from the sensor's: the part starts its clock when its crystals run.
-    fn distance(&self, values: &[Value], thresholds: &[f64]) -> f64 {
+    fn distance(&self, values: &[&Value], thresholds: &[f64]) -> f64 {
         let at_offset = |offset: i64| {
-            let distance = |value: &Value| self.distance_of(value, offset, thresholds);
+            let distance = |value: &&Value| self.distance_of(value, offset, thresholds);
             values.iter().map(distance).fold(0.0, f64::max)
         };
         (0..500).map(|ms| at_offset(1_000 * ms)).fold(f64::INFINITY, f64::min)

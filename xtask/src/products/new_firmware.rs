@@ -19,10 +19,8 @@ use toml::{Table, Value};
 #[allow(dead_code, reason = "a template needs sizes of units, too")]
 mod names;
 
-/// The axis that a channel's name tells a template: rates about x, y, z are 0 to 2, accelerations along them 3 to 5.
-pub fn axis(name: &str) -> Option<usize> {
-    names::axis(name)
-}
+/// The number of the axis that a channel's name tells a template: rates about x, y, z are 0 to 2, accelerations 3 to 5.
+pub(crate) use names::axis;
 
 pub const USAGE: &str = "cargo xtask new-firmware DIR --board NAME [--git URL]
 cargo xtask new-firmware DIR --hal NAME --flight FLIGHT.toml [--git URL]";
@@ -154,7 +152,7 @@ fn check_flight(path: &Path) -> Result<()> {
     for (index, channel) in flight.channels.iter().enumerate() {
         let line = flight.line_of(index).unwrap_or(1);
         let name = escaped(&channel.name);
-        let axis = names::axis(&channel.name).with_context(|| {
+        let axis = axis(&channel.name).with_context(|| {
             format!("{file}:{line}: `{name}` has no axis in its name, such as gyro_x or accel_z")
         })?;
         let size = UnitSize::of(&channel.unit);
