@@ -28,8 +28,6 @@ pub struct FarEnd {
     watch: Reader<MAX_FRAME>,
     /// The last frame that was delivered.
     delivered: Option<Sent>,
-    /// How many were.
-    pub frames: u32,
     pub told: Told,
 }
 
@@ -52,7 +50,6 @@ impl FarEnd {
             count: 0,
             watch: Reader::new(),
             delivered: None,
-            frames: 0,
             told: Told::default(),
         }
     }
@@ -84,6 +81,11 @@ impl FarEnd {
         }
     }
 
+    /// Number of frames that were delivered since this far end started.
+    pub fn frames(&self) -> u32 {
+        self.reader.frames()
+    }
+
     /// Remembers a frame that goes onto the line.
     pub fn remember(&mut self, start: u32, bytes: &[u8]) -> Result<(), &'static str> {
         let last = self.count.checked_sub(1).map(|last| self.sent[last % REMEMBERED].start);
@@ -103,7 +105,6 @@ impl FarEnd {
     pub fn hear(&mut self, mut bytes: &[u8]) -> Result<(), &'static str> {
         while let Some(received) = self.reader.next_frame(&mut bytes) {
             check(&self.sent, &mut self.delivered, &received, &mut self.told.starts)?;
-            self.frames += u32::from(!received.is_unread);
             self.receiver.apply(&received, |_, _, _| ());
         }
         Ok(())
@@ -113,7 +114,6 @@ impl FarEnd {
     pub fn idle(&mut self) -> Result<(), &'static str> {
         while let Some(received) = self.reader.next_after_silence() {
             check(&self.sent, &mut self.delivered, &received, &mut self.told.starts)?;
-            self.frames += u32::from(!received.is_unread);
             self.receiver.apply(&received, |_, _, _| ());
         }
         Ok(())

@@ -187,8 +187,9 @@ impl World {
             return Ok(false);
         }
         let is_exact = self.turn(fault, tally)?;
-        if self.far.frames != self.frames {
-            (self.frames, self.heard) = (self.far.frames, self.flown);
+        if self.far.frames() != self.frames {
+            self.frames = self.far.frames();
+            self.heard = self.flown;
         }
         Ok(is_exact)
     }
