@@ -22,10 +22,10 @@ pub struct Received<'a> {
     /// Whether it is the first frame of the sender's session that arrived, also after 2²⁴ lost frames or more; or one of
     /// whose number or time the session's earlier frames say that it is used again.
     pub is_start: bool,
-    /// Whether this stands for bytes of which no frame can be read yet, other than those of an idle line (0 and 0xFF): a
-    /// frame that is damaged, a short one that goes on from one that is missing for too long, or bytes behind those. Its frame is empty, and has the number and time of the
-    /// one before. It comes once until the next frame, as soon as the bytes at hand end, so that no value is called exact
-    /// meanwhile.
+    /// Whether no frame can be read yet of bytes that are not those of an idle line (0 and 0xFF): a frame is damaged, a
+    /// short one goes on from one that is missing for too long, or bytes wait behind those. The frame is empty, and has
+    /// the number and time of the one before. It comes once until the next frame, as soon as the bytes at hand end, so
+    /// that no value is called exact meanwhile.
     pub is_unread: bool,
     /// The frame.
     pub frame: FrameView<'a>,
@@ -44,7 +44,8 @@ impl Received<'_> {
 /// - **Order:** a frame that was already delivered, or that comes up to 65 536 frames late, is left out; a short one that is
 ///   more than 32 frames or an eighth of all counts (128 to 256 ms) late counts as damaged. Left out, too, is a late
 ///   frame of the three sessions before, until the present one has delivered 256 frames. Sixteen late frames in a row show
-///   that their session goes on or is used again, and the sixteenth counts as a start.
+///   that their session goes on or is used again, and the sixteenth counts as a start. So do two full ones after a short
+///   one that cannot be read.
 /// - **A session that is used again**, as where a sender's supply fails before its start was counted, begins anew where it
 ///   shows: by another first frame than that delivered, or one that comes more than sixteen frames late, by other bytes of the frame delivered last, by a time that goes
 ///   back by more than 65.5 ms while numbers rise or the other way round, or by sixteen late frames in a row.
@@ -337,8 +338,8 @@ impl<const N: usize> Reader<N> {
         }
     }
 
-    /// What stands for bytes that belong to no frame, once the bytes at hand end. Not before: a frame behind them, if it is
-    /// there already, says by its number whether any is missing.
+    /// Reports bytes that belong to no frame, once the bytes at hand end. It waits for that end because a frame behind them,
+    /// if it is there already, says by its number whether any is missing.
     #[inline]
     fn report_unread(&mut self) -> Option<Found> {
         if !self.is_interrupted || self.has_reported {
